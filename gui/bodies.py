@@ -15,6 +15,7 @@ from geofit.data.files import file_stems
 from geofit.data.messages import message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.activity import Activity, Work
+from geofit.gui.body_preview import LivePreview
 from geofit.gui.body_showing import BodyShowing
 from geofit.gui.body_styles import BodyStyles
 from geofit.gui.dialogs.step_fields import BodyStepDialog
@@ -64,6 +65,7 @@ class Bodies(QObject):
         self._document, self._panels, self._preferences, self._window = session.document, workspace, preferences, window
         self.showing = BodyShowing(session.document, workspace, showing, self)
         self.styles = BodyStyles(session.document, fitting, workspace, window)
+        self.preview = LivePreview(session.document, workspace, self)
         #: Provenances that are being made again, and those that were given up until another site is opened.
         self._pending: set[BodyProvenance] = set()
         self._given_up: set[BodyProvenance] = set()
@@ -86,6 +88,7 @@ class Bodies(QObject):
         """Listen no more; the document may live longer than the window."""
         self.showing.close()
         self.styles.close()
+        self.preview.close()
         self._document.site_changed.disconnect(self._on_site)
 
     def fit(self, name: str, source: BodySource, settings: BodySettings) -> None:
@@ -298,7 +301,10 @@ class Bodies(QObject):
             return
         words, kinds = {
             OTHER: (self.tr("Open another site file"), self.tr("Site files (*.toml)")),
-            OUTLINES: (self.tr("Open outlines on sections"), self.tr("Outlines (*.dxf *.geojson *.json)")),
+            OUTLINES: (
+                self.tr("Open outlines on sections"),
+                self.tr("Outlines, or a site file with flat drawings (*.dxf *.geojson *.json *.toml)"),
+            ),
             POINTS: (self.tr("Open points of a body"), self.tr("Tables of points (*.csv *.txt *.xyz *.xlsx)")),
         }[kind]
         path, _ = QFileDialog.getOpenFileName(

@@ -84,11 +84,22 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
     return entities
 
 
-def closed_lines(source: Source, journal: Journal) -> list[ClosedLine]:
-    """Return the closed lines of the model space at their true place; all other entities are listed.
+def closed_lines(
+    source: Source, journal: Journal, *, scale_stated: bool = False, with_open_lines: bool = False
+) -> list[ClosedLine]:
+    """Return the closed lines of the model space, metres of ``source.unit``; all other entities are listed.
 
-    Polylines of a coordinate system of their own, arcs, circles, ellipses and splines become corners in map
-    coordinates.
+    Polylines of a coordinate system of their own, arcs, circles, ellipses and splines become corners in the
+    coordinates of the drawing. ``source.table`` chooses layers by a pattern.
+
+    Parameters
+    ----------
+    source, journal
+        The drawing, and where everything that is not used is listed.
+    scale_stated : bool
+        Whether a unit of the drawing other than metres is known.
+    with_open_lines : bool
+        Whether open lines belong to the drawing, as those of horizons do: they are listed as notes.
 
     Raises
     ------
@@ -98,6 +109,7 @@ def closed_lines(source: Source, journal: Journal) -> list[ClosedLine]:
     from ezdxf.path import make_path
 
     journal.read(source)
+    factor = 1.0 if source.unit is None else metres_of(source.unit, source.name)
     found: list[ClosedLine] = []
     with _readable(source):
         document = _document(source)
@@ -111,9 +123,11 @@ def closed_lines(source: Source, journal: Journal) -> list[ClosedLine]:
                 size = float(np.ptp(np.array(corners), axis=0).max()) if corners else 0.0
                 if path.is_closed and size > 0:
                     xyz = np.array([tuple(place) for place in path.flattening(ARC * size)], float)[:-1]
+            if source.table and not fnmatchcase(layer.casefold(), source.table.casefold()):
+                continue
             if len(xyz) < 3 or not np.isfinite(xyz).all():
                 journal.add(
-                    "note" if kind not in CLOSABLE else "error",
+                    "note" if with_open_lines or kind not in CLOSABLE else "error",
                     source.name,
                     message("io.not-closed-line", "A {entity} that is not a closed line is not used", entity=kind),
                     message("io.close-polyline", "Close the polyline in CAD if it outlines the body."),
@@ -122,8 +136,8 @@ def closed_lines(source: Source, journal: Journal) -> list[ClosedLine]:
                     value=kind,
                 )
                 continue
-            found.append(ClosedLine(layer, xyz))
-    _warn_of_unit(unit, source, journal, False)
+            found.append(ClosedLine(layer, factor * xyz))
+    _warn_of_unit(unit, source, journal, scale_stated)
     return found
 
 

@@ -1,4 +1,4 @@
-"""Closed outlines of a body on sections: polylines of a drawing (DXF), polygons and lines of GeoJSON."""
+"""Closed outlines of a body on sections: in a drawing (DXF), in GeoJSON, or in the flat drawings of a site file."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from geofit.data.site import ImportIssue
 from geofit.io.crs import WGS84, refuse_degrees
 from geofit.io.dxf import closed_lines
 from geofit.io.journal import Journal
+from geofit.io.section_outlines import site_outlines
 from geofit.io.source import Source
 
 __all__ = ["OUTLINE_ENDINGS", "DrawnOutlines", "read_outlines"]
@@ -26,7 +27,7 @@ __all__ = ["OUTLINE_ENDINGS", "DrawnOutlines", "read_outlines"]
 Floats = NDArray[np.float64]
 
 #: Endings of the files that :func:`read_outlines` reads.
-OUTLINE_ENDINGS = (".dxf", ".geojson", ".json")
+OUTLINE_ENDINGS = (".dxf", ".geojson", ".json", ".toml")
 #: Attributes of a feature that name its section, the surest first.
 SECTION_NAMES = ("section", "profile", "剖面", "剖面号", "layer", "name")
 #: Longitudes and latitudes lie within these, and sections of a body within less than this of each other.
@@ -38,12 +39,17 @@ class DrawnOutlines:
     """Outlines of a file, by the planes on which they lie.
 
     ``outlines`` carry the names of their sections. ``layers`` counts the closed lines of each layer, also of those that
-    were not chosen; ``issues`` lists everything that is not used.
+    were not chosen; ``issues`` lists everything that is not used; ``inputs`` has the SHA-256 of each file by its name.
     """
 
     outlines: tuple[Outline, ...]
     layers: dict[str, int]
     issues: tuple[ImportIssue, ...]
+    inputs: dict[str, str]
+
+
+#: A closed line: its layer, its corners (k, 3), and the name of its section where that is known.
+Ring = tuple[str, Floats, str]
 
 
 def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> DrawnOutlines:
@@ -56,7 +62,8 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> Dr
     ----------
     path : path
         DXF: closed polylines (2D ones in the plane of their own coordinate system), circles, ellipses and splines;
-        GeoJSON: polygons, and lines that end where they begin, with elevations.
+        GeoJSON: polygons, and lines that end where they begin, with elevations; TOML: a site file, whose drawings of
+        sections and levels are read, each in its own coordinates.
     layers : collection of str
         Layers of the drawing, or names of sections; empty: all.
 
@@ -68,7 +75,9 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> Dr
     source, journal = Source(path=Path(path)), Journal()
     match source.path.suffix.casefold():
         case ".dxf":
-            rings = [(line.layer, line.xyz) for line in closed_lines(source, journal)]
+            rings = [(line.layer, line.xyz, "") for line in closed_lines(source, journal)]
+        case ".toml":
+            rings = site_outlines(source, journal)
         case ".geojson" | ".json":
             rings = _features(source, journal)
         case ending:
@@ -80,7 +89,7 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> Dr
                 file=source.name,
             )  # fmt: skip
     counts: dict[str, int] = {}
-    for layer, _ in rings:
+    for layer, *_ in rings:
         counts[layer] = counts.get(layer, 0) + 1
     missing = [layer for layer in layers if layer not in counts]
     if missing:
@@ -99,18 +108,20 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> Dr
             ),
             message(
                 "io.draw-outlines-in-place",
-                "Draw each section at its true place, with elevations, as closed polylines.",
+                "Draw each section at its true place, with elevations, as closed polylines, or name flat drawings "
+                "in the [[section]] tables of a site file.",
             ),
             file=source.name,
         )
-    outlines = tuple(Outline(name, ring) for name, own in zip(_names(planes), planes, strict=True) for _, ring in own)
-    return DrawnOutlines(outlines, counts, tuple(journal.issues))
+    outlines = tuple(Outline(name, one[1]) for name, own in zip(_names(planes), planes, strict=True) for one in own)
+    return DrawnOutlines(outlines, counts, tuple(journal.issues), dict(journal.inputs))
 
 
-def _by_plane(rings: Sequence[tuple[str, Floats]], source: Source, journal: Journal) -> list[list[tuple[str, Floats]]]:
+def _by_plane(rings: Sequence[Ring], source: Source, journal: Journal) -> list[list[Ring]]:
     """Group closed lines by their planes, the largest first, since it knows its plane best; list those without one."""
-    flat: list[tuple[float, str, Floats, Floats]] = []
-    for k, (layer, ring) in enumerate(rings, 1):
+    flat: list[tuple[float, Ring, Floats]] = []
+    for k, one in enumerate(rings, 1):
+        layer, ring, _ = one
         _, sizes, axes = np.linalg.svd(ring - ring.mean(axis=0), full_matrices=False)
         spread = sizes[0] / np.sqrt(len(ring))
         off = float(np.abs((ring - ring.mean(axis=0)) @ axes[2]).max())
@@ -120,15 +131,15 @@ def _by_plane(rings: Sequence[tuple[str, Floats]], source: Source, journal: Jour
             reason = message("io.outline-not-flat", "The outline lies up to {off:.2f} m off one plane", off=off)
             _leave(source, journal, k, layer, reason)
         else:
-            flat.append((float(spread), layer, ring, axes[2]))
-    groups: list[tuple[float, Floats, Floats, list[tuple[str, Floats]]]] = []
-    for spread, layer, ring, normal in sorted(flat, key=lambda one: -one[0]):
+            flat.append((float(spread), one, axes[2]))
+    groups: list[tuple[float, Floats, Floats, list[Ring]]] = []
+    for spread, one, normal in sorted(flat, key=lambda one: -one[0]):
         for size, middle, across, own in groups:
-            if np.abs((ring - middle) @ across).max() <= FLAT * size:
-                own.append((layer, ring))
+            if np.abs((one[1] - middle) @ across).max() <= FLAT * size:
+                own.append(one)
                 break
         else:
-            groups.append((spread, ring.mean(axis=0), normal, [(layer, ring)]))
+            groups.append((spread, one[1].mean(axis=0), normal, [one]))
     if not groups:
         return []
     middles = np.array([group[1] for group in groups])
@@ -137,9 +148,9 @@ def _by_plane(rings: Sequence[tuple[str, Floats]], source: Source, journal: Jour
     return [groups[k][3] for k in np.argsort(middles @ along, kind="stable")]
 
 
-def _names(planes: Sequence[Sequence[tuple[str, Floats]]]) -> list[str]:
-    """Return a name for each plane: its layer's; with a number where the layer lies on several."""
-    first = [own[0][0] for own in planes]
+def _names(planes: Sequence[Sequence[Ring]]) -> list[str]:
+    """Return a name for each plane: its section's, else its layer's; with a number where that lies on several."""
+    first = [own[0][2] or own[0][0] for own in planes]
     names: list[str] = []
     for k, layer in enumerate(first):
         several = first.count(layer) > 1
@@ -158,7 +169,7 @@ def _leave(source: Source, journal: Journal, number: int, layer: str, reason: Me
     )
 
 
-def _features(source: Source, journal: Journal) -> list[tuple[str, Floats]]:
+def _features(source: Source, journal: Journal) -> list[Ring]:
     """Return the closed rings of GeoJSON features with the names of their sections."""
     import shapely
 
@@ -177,7 +188,7 @@ def _features(source: Source, journal: Journal) -> list[tuple[str, Floats]]:
     code = str((crs.get("properties") or {}).get("name", "")) if isinstance(crs, dict) else ""
     if code:
         refuse_degrees(code, source.name)
-    rings: list[tuple[str, Floats]] = []
+    rings: list[Ring] = []
     for number, (shape, attributes) in enumerate(zip(shapes, named, strict=True), 1):
         layer = next((str(attributes[key]) for key in SECTION_NAMES if attributes.get(key) is not None), "")
         found = _closed(shape)
@@ -185,11 +196,11 @@ def _features(source: Source, journal: Journal) -> list[tuple[str, Floats]]:
             _leave(source, journal, number, layer, message("io.line-not-closed", "It is not a closed line"))
         for ring in found:
             if np.isfinite(ring).all():
-                rings.append((layer, ring))
+                rings.append((layer, ring, ""))
             else:
                 _leave(source, journal, number, layer, message("io.outline-no-z", "The outline has no elevations"))
     if not code and rings:
-        corners = np.concatenate([ring[:, :2] for _, ring in rings])
+        corners = np.concatenate([ring[:, :2] for _, ring, _ in rings])
         if (np.abs(corners) <= DEGREES).all() and (np.ptp(corners, axis=0) < CLOSE).all():
             refuse_degrees(WGS84, source.name)
     return rings

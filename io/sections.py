@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Message, message
+from geofit.data.messages import EMPTY, Message, message
 from geofit.data.points import PointSet
 from geofit.data.site import Section
 from geofit.io.axes import Region, check_axes, place_in
@@ -21,7 +21,7 @@ from geofit.io.rows import Rows, read_rows
 from geofit.io.section_dxf import read_drawing
 from geofit.io.source import Source
 
-__all__ = ["Drawing", "lift", "load_level", "load_lines", "load_section", "load_sections"]
+__all__ = ["Drawing", "lift", "load_level", "load_lines", "load_section", "load_sections", "off_line_reason"]
 
 Floats = NDArray[np.float64]
 
@@ -235,6 +235,12 @@ def _from_dxf(
 def _off_line(section: Section, distance: Floats) -> NDArray[np.bool_]:
     length = chainage(section.line)[-1]
     return np.asarray((distance < -END_TOLERANCE) | (distance > length + END_TOLERANCE))
+
+
+def off_line_reason(section: Section, distance: Floats) -> tuple[Message, Message]:
+    """Return why distances (n,) are not all on the line of a section, and the remedy; empty where they are."""
+    off = np.flatnonzero(_off_line(section, distance))
+    return _off_line_text(section, float(distance[off[0]])) if len(off) else (EMPTY, EMPTY)
 
 
 def _off_line_text(section: Section, distance: float) -> tuple[Message, Message]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -17,34 +17,44 @@ from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.sections import Drawing, load_level, load_lines, load_section, load_sections
 from geofit.io.site_keys import Reader
+from geofit.io.source import Source
 
-__all__ = ["gather", "read_sections"]
+__all__ = ["gather", "placed_levels", "placed_sections", "read_sections", "section_lines"]
 
 Floats = NDArray[np.float64]
 
 
-def read_sections(
-    reader: Reader,
-    top: Mapping[str, Any],
-    names: HorizonNames,
-    journal: Journal,
-    region: Region | None,
-    gathered: dict[str, list[PointSet]],
-) -> tuple[Section, ...]:
-    """Read the section lines, the [[section]] and the [[level]] tables; points go to ``gathered``."""
+def section_lines(
+    reader: Reader, top: Mapping[str, Any], journal: Journal, region: Region | None = None
+) -> dict[str, Floats]:
+    """Return the lines of sections in plan that the [section_lines] tables hold."""
     lines: dict[str, Floats] = {}
     for table in reader.tables(top, "section_lines"):
         lines |= load_lines(reader.source(table, "[section_lines]", kind="section lines"), journal, region)
-    sections: list[Section] = []
+    return lines
+
+
+def placed_sections(
+    reader: Reader, top: Mapping[str, Any], lines: Mapping[str, Floats], region: Region | None = None
+) -> Iterator[tuple[Section, Source, Drawing]]:
+    """Return each [[section]] with its line in plan, its file, and what the coordinates of its drawing are.
+
+    Raises
+    ------
+    InputError
+        If a section has no name or no line, or two have one name.
+    """
+    taken: set[str] = set()
     for table in reader.tables(top, "section"):
         name = reader.need(table, "name", str, "[[section]]", message("io.write-name", 'Write name = "...".'))
         where = message("io.section", "section '{name}'", name=name)
-        if any(section.name == name for section in sections):
+        if name in taken:
             raise reader.fail(
                 message("io.section-name-repeated", "Two sections have the name '{name}'", name=name),
                 message("io.give-each-own-name", "Give each its own."),
                 "name",
             )
+        taken.add(name)
         source = reader.source(table, where, ("name", "line", "scale", "origin"), "section")
         remedy = message("io.write-line", "Write line = [[x, y], [x, y]], the corners of the section line in plan.")
         if "line" not in table and name in lines:
@@ -68,8 +78,38 @@ def read_sections(
                 line.tolist(),
             )
         _check_line(reader, line, where, region)
-        sections.append(Section(name, line))
-        gather(gathered, load_section(source, sections[-1], _drawing(reader, table, where), names, journal))
+        yield Section(name, line), source, _drawing(reader, table, where)
+
+
+def placed_levels(reader: Reader, top: Mapping[str, Any]) -> Iterator[tuple[float, Source, Drawing]]:
+    """Return the elevation of each [[level]], its file, and what the coordinates of its drawing are."""
+    for table in reader.tables(top, "level"):
+        elevation = reader.get(table, "elevation", float, "[[level]]")
+        if elevation is None:
+            raise reader.fail(
+                message("io.level-no-elevation", "A [[level]] has no elevation"),
+                message("io.write-elevation-1200", "Write elevation = 1200.0."),
+                "elevation",
+            )
+        where = message("io.level", "level {elevation:g}", elevation=elevation)
+        source = reader.source(table, where, ("elevation", "scale", "origin"), "traces")
+        yield elevation, source, _drawing(reader, table, where)
+
+
+def read_sections(
+    reader: Reader,
+    top: Mapping[str, Any],
+    names: HorizonNames,
+    journal: Journal,
+    region: Region | None,
+    gathered: dict[str, list[PointSet]],
+) -> tuple[Section, ...]:
+    """Read the section lines, the [[section]] and the [[level]] tables; points go to ``gathered``."""
+    lines = section_lines(reader, top, journal, region)
+    sections: list[Section] = []
+    for section, source, drawing in placed_sections(reader, top, lines, region):
+        sections.append(section)
+        gather(gathered, load_section(source, section, drawing, names, journal))
     for table in reader.tables(top, "sections"):
         source = reader.source(table, "[sections]", kind="sections")
         found, points = load_sections(source, lines, names, journal, region)
@@ -82,17 +122,7 @@ def read_sections(
                 )
         sections += found
         gather(gathered, points)
-    for table in reader.tables(top, "level"):
-        elevation = reader.get(table, "elevation", float, "[[level]]")
-        if elevation is None:
-            raise reader.fail(
-                message("io.level-no-elevation", "A [[level]] has no elevation"),
-                message("io.write-elevation-1200", "Write elevation = 1200.0."),
-                "elevation",
-            )
-        where = message("io.level", "level {elevation:g}", elevation=elevation)
-        source = reader.source(table, where, ("elevation", "scale", "origin"), "traces")
-        drawing = _drawing(reader, table, where)
+    for elevation, source, drawing in placed_levels(reader, top):
         gather(gathered, load_level(source, elevation, drawing, names, journal, region))
     return tuple(sections)
 

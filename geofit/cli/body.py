@@ -32,8 +32,8 @@ def body(
         Path,
         typer.Argument(
             metavar="SOURCE",
-            help="site.toml with [boreholes], a table of collars, outlines on sections (DXF, GeoJSON), or a table of "
-            "points on the body.",
+            help="site.toml with [boreholes], a table of collars, outlines on sections (DXF, GeoJSON; with --layer the "
+            "flat drawings of a site.toml), or a table of points on the body.",
         ),
     ],
     out: Out,
@@ -67,8 +67,9 @@ def body(
     with listening() as progress:
         drawn = _drawn(source, bool(code or survey or intervals), layer or [], settings)
         if drawn is not None:
+            name = _name(source, layer or [])
             signed = signed_by(None, author, organisation, origin, certificate=page)
-            run = run_body(drawn.data, out, name=source.stem, settings=settings, progress=progress, signed=signed)
+            run = run_body(drawn.data, out, name=name, settings=settings, progress=progress, signed=signed)
         else:
             holes = _read(source, survey, intervals or [])
             print_issues(holes.issues)
@@ -104,7 +105,7 @@ def _drawn(source: Path, of_holes: bool, layers: list[str], settings: BodySettin
     from geofit.project.body_sources import read_body_source
 
     ending = source.suffix.casefold()
-    outlined = ending in OUTLINE_ENDINGS
+    outlined = ending in OUTLINE_ENDINGS and (bool(layers) or ending != ".toml")
     if (layers and not outlined) or (of_holes and outlined):
         raise InputError(
             message("cli.layer-of-outlines", "--layer is for outlines; --code, --survey and --intervals for boreholes"),
@@ -116,6 +117,11 @@ def _drawn(source: Path, of_holes: bool, layers: list[str], settings: BodySettin
     if of_holes or ending == ".toml":
         return None
     return read_body_source(SurfacePicks(source.name), settings, (), source.parent)
+
+
+def _name(source: Path, layers: list[str]) -> str:
+    """Return what a body of outlines or points is called: a site file may hold several, each on its layer."""
+    return "+".join(layers) if source.suffix.casefold() == ".toml" else source.stem
 
 
 def _read(source: Path, survey: Path | None, intervals: list[Path]) -> Boreholes | Site:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -78,7 +78,7 @@ def read_body_source(
 
             drawn = read_outlines(folder / file, layers)
             data = from_outlines(drawn.outlines, settings.step)
-            return SourceData(_with_issues(data, drawn.issues), file_digest(folder / file), drawn.outlines)
+            return SourceData(_with_issues(data, drawn.issues), _given_of(drawn.inputs), drawn.outlines)
         case SurfacePicks(file):
             from geofit.io.body_points import read_body_points
 
@@ -127,6 +127,13 @@ def given_of_logs(campaigns: Sequence[Any]) -> str:
             for array in (log.top, log.base):
                 digest.update(np.ascontiguousarray(array, np.float64).tobytes())
     return digest.hexdigest()[:16]
+
+
+def _given_of(inputs: Mapping[str, str]) -> str:
+    """Return a short hash of files: of one alone its own, as :func:`file_digest`."""
+    if len(inputs) == 1:
+        return next(iter(inputs.values()))[:16]
+    return hashlib.sha256("\n".join(f"{name} {inputs[name]}" for name in sorted(inputs)).encode()).hexdigest()[:16]
 
 
 def file_digest(file: Path) -> str:

@@ -61,7 +61,7 @@ class BodiesPanel(QWidget):
 
     Signals: ``chosen(name)`` another body ("" for a new one); ``fit_requested(name, source, settings)``;
     ``stop_requested()``; ``renamed(name)``, ``deleted(name)``, ``exported(name)`` ask for these; ``file_wanted(kind)``
-    for a file of the source.
+    for a file of the source; ``edited(source, settings)`` reports what differs from the fit, None twice if nothing.
     """
 
     chosen = Signal(str)
@@ -71,6 +71,7 @@ class BodiesPanel(QWidget):
     delete_requested = Signal(str)
     export_requested = Signal(str)
     file_wanted = Signal(str)
+    edited = Signal(object, object)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -236,6 +237,8 @@ class BodiesPanel(QWidget):
         title = self.title.text().strip()
         taken = self._shown is None and bool(title) and title in self._taken
         self.fit_button.setText(self.tr("Fit") if fitted else self.tr("Read"))
+        new = fitted and source is not None and settings is not None and (known is None or changed)
+        self.edited.emit(source if new else None, settings if new else None)
         frame = isinstance(source, MorphFrame)
         self.fit_button.setEnabled(source is not None and settings is not None and not taken and not frame)
         self.export_button.setEnabled(known is not None and not self._waiting())

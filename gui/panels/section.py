@@ -96,6 +96,7 @@ class SectionPanel(QWidget):
         self._surfaces: Mapping[str, HorizonFit] = {}
         self.meshes: Meshes = {}
         self._bodies: tuple[SectionBody, ...] = ()
+        self.preview: SectionBody | None = None
         self._task: Task | None = None
         self._again = self._due = False
         self._grasped: tuple[float, float] | None = None
@@ -150,6 +151,15 @@ class SectionPanel(QWidget):
         """Cut other bodies, too."""
         self._bodies = tuple(bodies)
         if self.data is not None:
+            self.canvas.repaint_figure()
+
+    def show_preview(self, body: SectionBody | None, text: str = "") -> None:
+        """Cut a body with the settings that are being edited, too; None: no more, and ``text`` says why."""
+        changed = body is not self.preview
+        self.preview = body
+        if text:
+            self.state.setText(text)
+        if changed and self.data is not None:
             self.canvas.repaint_figure()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
@@ -282,7 +292,8 @@ class SectionPanel(QWidget):
         }
         axes = self.canvas.axes(1)[0]
         paint_section(axes, self.data, colours, words)
-        draw_bodies(axes, self._bodies, self.data.curtain, self.data.thickness, colours)
+        bodies = self._bodies if self.preview is None else (*self._bodies, self.preview)
+        draw_bodies(axes, bodies, self.data.curtain, self.data.thickness, colours)
 
     def _arrange(self, colours: PlotColours) -> None:
         """Put the drawing beside or above its legend, with all of the section in it unless somebody moved it."""

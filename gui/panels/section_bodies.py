@@ -31,13 +31,17 @@ INSIDE, OUTSIDE = 3.0, 1.0
 
 @dataclass(frozen=True, eq=False)
 class SectionBody:
-    """A body to be cut: triangles in map coordinates, colour, opacity, and what it was fitted to, if anything."""
+    """A body to be cut: triangles in map coordinates, colour, opacity, and what it was fitted to, if anything.
+
+    A ``dashed`` one is drawn as an outline alone: it is a preview.
+    """
 
     name: str
     mesh: TriangleMesh
     colour: str
     opacity: float = 1.0
     data: BodyData | None = None
+    dashed: bool = False
 
 
 def draw_bodies(
@@ -48,8 +52,10 @@ def draw_bodies(
         colour, named = colours.of(body.colour), False
         for outline in mesh_section(body.mesh.vertices, body.mesh.triangles, curtain.line):
             path = _path(outline)
-            axes.add_patch(PathPatch(path, fc=colour, alpha=FILL * body.opacity, lw=0, zorder=1.5))
-            edge = PathPatch(path, fill=False, ec=colour, lw=1.7, zorder=4, label=None if named else body.name)
+            if not body.dashed:
+                axes.add_patch(PathPatch(path, fc=colour, alpha=FILL * body.opacity, lw=0, zorder=1.5))
+            label, style = None if named else body.name, "--" if body.dashed else "-"
+            edge = PathPatch(path, fill=False, ec=colour, lw=1.7, ls=style, zorder=4.1, label=label)
             axes.add_patch(edge)
             axes.update_datalim(path.vertices)
             named = True

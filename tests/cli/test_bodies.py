@@ -54,6 +54,28 @@ def drilled(tmp_path) -> Path:
     return tmp_path
 
 
+def test_body_from_flat_drawings_of_a_site_file(tmp_path, monkeypatch, capsys):
+    import ezdxf
+
+    angle = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    text = []
+    for k, across in enumerate((-40.0, -20.0, 0.0, 20.0, 40.0)):
+        share = np.sqrt(1 - (across / 60) ** 2)
+        document = ezdxf.new("R2010")
+        lens = np.column_stack([100 + 45 * share * np.cos(angle), 900 + 30 * share * np.sin(angle)])
+        document.modelspace().add_lwpolyline((10 * lens + [7, 5]).tolist(), close=True, dxfattribs={"layer": "ORE"})
+        document.saveas(tmp_path / f"P{k}.dxf")
+        line = [[EAST, NORTH + across], [EAST + 200, NORTH + across]]
+        text.append(f'[[section]]\nname = "P{k}"\nline = {line}\nfile = "P{k}.dxf"\nscale = 10\norigin = [7, 5]\n')
+    (tmp_path / "site.toml").write_text("\n".join(text), encoding="utf-8")
+    code, out, err = run(
+        monkeypatch, capsys, "body", tmp_path / "site.toml", "--layer", "ORE", "--out", tmp_path / "o", "--json"
+    )
+    assert code == 0, err
+    found = json.loads(out)
+    assert found["volumes"]["best"] == pytest.approx(4 / 3 * np.pi * 60 * 45 * 30, rel=0.03)
+
+
 def test_body_from_a_collar_table_is_the_ellipsoid_that_was_drilled(drilled, monkeypatch, capsys):
     code, out, err = run(
         monkeypatch, capsys, "body", drilled / "collar.csv", "--intervals", drilled / "lithology.csv",

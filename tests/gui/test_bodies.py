@@ -265,6 +265,55 @@ def test_the_section_cuts_bodies_with_contacts_and_intervals(with_ore):
     assert "ORE" not in panel.canvas.figure.axes[0].get_legend_handles_labels()[1]
 
 
+def previewed(app):
+    """Wait for the preview, and return it."""
+    section = app.panels.section
+    app.qtbot.waitUntil(lambda: section.preview is not None and app.bodies.preview.idle, timeout=60_000)
+    return section.preview
+
+
+def test_the_section_follows_settings_that_are_not_fitted_yet(with_ore):
+    panel, section = with_ore.panels.bodies, with_ore.panels.section
+    result = with_ore.document.body("ORE")
+    middle = result.fitted.data.contacts.mean(axis=0)
+    with_ore.window.showing.line = middle[:2] + np.array([[-300.0, 0.0], [300.0, 0.0]])
+
+    def edit(name, value):
+        panel.form.fields[name].put(value)
+        panel.form.changed.emit()
+
+    edit("ranges", (4.0, 1.0, 1.0))
+    # Nothing is fitted for a section that nobody sees.
+    with_ore.qtbot.wait(600)
+    assert section.preview is None
+    with_ore.trigger("section")
+    with_ore.window.showing.show_section()
+    first = previewed(with_ore)
+    assert first.dashed
+    assert first.mesh.is_closed
+    section.canvas.draw()
+    axes = section.canvas.figure.axes[0]
+    assert {"ORE", first.name} <= set(axes.get_legend_handles_labels()[1])
+    # A further change stops the fit under way: only the last one is shown.
+    edit("ranges", (1.0, 1.0, 4.0))
+    with_ore.qtbot.waitUntil(lambda: not with_ore.bodies.preview.idle)
+    edit("ranges", (1.0, 4.0, 1.0))
+    with_ore.qtbot.waitUntil(lambda: section.preview is not first, timeout=60_000)
+    second = previewed(with_ore)
+    assert abs(second.mesh.volume / first.mesh.volume - 1) > 1e-3
+    assert with_ore.document.body("ORE") is result
+    assert not with_ore.window.activity.busy
+    # Back at the settings of the fit there is nothing to preview.
+    edit("ranges", (1.0, 1.0, 1.0))
+    assert section.preview is None
+    section.canvas.draw()
+    assert second.name not in section.canvas.figure.axes[0].get_legend_handles_labels()[1]
+    # Settings that cannot be fitted say why where the preview would be.
+    edit("box", ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)))
+    with_ore.qtbot.waitUntil(lambda: "box" in section.state.text(), timeout=60_000)
+    assert section.preview is None
+
+
 def test_violations_and_holes_find_each_other(with_ore):
     document, figures, view = with_ore.document, with_ore.panels.body_figures, with_ore.panels.view
     result, provenance = document.body("ORE"), document.state.bodies["ORE"].provenance

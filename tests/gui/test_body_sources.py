@@ -83,6 +83,30 @@ def test_outlines_of_a_drawing_become_a_body_with_questions(opened, monkeypatch)
     assert panel.badge.isVisibleTo(panel)
 
 
+def test_flat_drawings_of_the_site_file_become_a_body(opened, monkeypatch):
+    """Each section is drawn flat, in units and about an origin of its own."""
+    text = (opened.sample / "site.toml").read_text(encoding="utf-8")
+    for k, x in enumerate((-40.0, -20.0, 0.0, 20.0, 40.0)):
+        width = 30.0 * np.sqrt(1 - (x / 60) ** 2)
+        uv = np.column_stack([100 + width * np.cos(ANGLE), PLACE[2] + 0.4 * width * np.sin(ANGLE)])
+        document = ezdxf.new("R2010")
+        document.modelspace().add_lwpolyline((4 * uv + [k, 9]).tolist(), close=True, dxfattribs={"layer": "LENS"})
+        document.saveas(opened.sample / f"flat{k}.dxf")
+        line = [[1400.0 + x, 2500.0], [1400.0 + x, 2700.0]]
+        text += f'\n[[section]]\nname = "F{k}"\nline = {line}\nfile = "flat{k}.dxf"\nscale = 4\norigin = [{k}, 9]\n'
+    (opened.sample / "flat.toml").write_text(text, encoding="utf-8")
+    choose(opened, monkeypatch, "outlines", opened.sample / "flat.toml")
+    fit(opened)
+    (found,) = (
+        opened.document.body(name)
+        for name, one in opened.document.state.bodies.items()
+        if one.provenance.source == Outlines("flat.toml")
+    )
+    assert found.accuracy.verdict == "PASS"
+    lower, upper = found.mesh.vertices.min(axis=0), found.mesh.vertices.max(axis=0)
+    np.testing.assert_allclose((lower + upper) / 2 + found.body.origin, PLACE, atol=3.0)
+
+
 def test_the_same_outlines_as_geojson(opened, monkeypatch):
     features = [
         {"type": "Feature", "properties": {"section": name},

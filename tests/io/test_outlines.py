@@ -133,3 +133,76 @@ def test_points_outside_alone_bound_nothing(tmp_path):
     (tmp_path / "p.csv").write_text("x,y,z,side\n1,2,3,outside\n4,5,6,outside\n", encoding="utf-8")
     with pytest.raises(InputError, match="only points outside"):
         read_body_points(tmp_path / "p.csv")
+
+
+START, AZIMUTH = np.array([500_000.0, 3_100_000.0]), np.radians(30.0)
+ALONG = np.array([np.sin(AZIMUTH), np.cos(AZIMUTH)])
+ACROSS = np.array([ALONG[1], -ALONG[0]])
+
+
+def flat_site(folder, sections=5, scale=1000.0, origin=(250.0, -75.0), length=100.0):
+    """Write a site whose sections cross a lens, each drawn flat in drawing units of its own; return the site file."""
+    tables = []
+    for k in range(sections):
+        across = 15.0 * (k - (sections - 1) / 2)
+        width = 30.0 * np.sqrt(1 - (across / 60) ** 2)
+        uv = np.column_stack([50.0 + width * np.cos(ANGLE), 700.0 + 0.4 * width * np.sin(ANGLE)]) * scale + origin
+        document = ezdxf.new("R2010")
+        space = document.modelspace()
+        space.add_lwpolyline(uv.tolist(), close=True, dxfattribs={"layer": "ORE"})
+        space.add_lwpolyline((np.array([[0, 720], [100, 725.0]]) * scale + origin).tolist(), dxfattribs={"layer": "T2"})
+        document.saveas(folder / f"S{k}.dxf")
+        ends = [(START + across * ACROSS + t * ALONG).tolist() for t in (0.0, length)]
+        tables.append(
+            f'[[section]]\nname = "S{k}"\nline = {ends}\nfile = "S{k}.dxf"\nscale = {scale}\norigin = {list(origin)}\n'
+        )
+    (folder / "site.toml").write_text("\n".join(tables), encoding="utf-8")
+    return folder / "site.toml"
+
+
+@pytest.mark.parametrize(("scale", "origin"), [(1.0, (0.0, 0.0)), (1000.0, (250.0, -75.0)), (3.28084, (0.0, -300.0))])
+def test_flat_sections_of_a_site_file_lie_at_their_true_places(tmp_path, scale, origin):
+    found = read_outlines(flat_site(tmp_path, scale=scale, origin=origin), ["ORE"])
+    assert found.layers == {"ORE": 5}
+    by_section = {one.section: one.xyz for one in found.outlines}
+    assert sorted(by_section) == [f"S{k}" for k in range(5)]
+    for k in range(5):
+        across = 15.0 * (k - 2)
+        width = 30.0 * np.sqrt(1 - (across / 60) ** 2)
+        plan = START + across * ACROSS + np.outer(50.0 + width * np.cos(ANGLE), ALONG)
+        true = np.column_stack([plan, 700.0 + 0.4 * width * np.sin(ANGLE)])
+        np.testing.assert_allclose(by_section[f"S{k}"], true, atol=1e-6)
+    # Open lines belong to horizons: they are notes, and no errors.
+    assert {(one.severity, one.column) for one in found.issues} == {("note", "T2")}
+    assert set(found.inputs) == {"site.toml", *(f"S{k}.dxf" for k in range(5))}
+
+
+def test_a_flat_outline_beyond_its_section_line_is_listed(tmp_path):
+    site = flat_site(tmp_path, length=78.0)
+    found = read_outlines(site)
+    errors = [one for one in found.issues if one.severity == "error"]
+    # The three middle sections are wider than 28 m from the middle of their lines.
+    widths = [30.0 * np.sqrt(1 - (15.0 * (k - 2) / 60) ** 2) for k in range(5)]
+    assert [one.file for one in errors] == [f"S{k}.dxf" for k in range(5) if widths[k] > 28.01]
+    assert len(found.outlines) == 5 - len(errors)
+
+
+def test_plans_at_levels_give_outlines(tmp_path):
+    tables = []
+    for level in (680.0, 700.0):
+        document = ezdxf.new("R2010")
+        document.modelspace().add_circle((20.0, 30.0), 8.0, dxfattribs={"layer": "VOID"})
+        document.saveas(tmp_path / f"L{level:g}.dxf")
+        tables.append(f'[[level]]\nelevation = {level}\nfile = "L{level:g}.dxf"\nscale = 0.5\norigin = [10, 10]\n')
+    (tmp_path / "site.toml").write_text("\n".join(tables), encoding="utf-8")
+    found = read_outlines(tmp_path / "site.toml")
+    assert [one.section for one in found.outlines] == ["level 680", "level 700"]
+    for one, level in zip(found.outlines, (680.0, 700.0), strict=True):
+        assert (one.xyz[:, 2] == level).all()
+        np.testing.assert_allclose(np.hypot(one.xyz[:, 0] - 20, one.xyz[:, 1] - 40), 16.0, rtol=1e-3)
+
+
+def test_a_site_file_without_drawings_is_refused(tmp_path):
+    (tmp_path / "site.toml").write_text('[site]\nname = "none"\n', encoding="utf-8")
+    with pytest.raises(InputError, match="drawing"):
+        read_outlines(tmp_path / "site.toml")
