@@ -89,4 +89,5 @@ def _later(pairs: Ints) -> Ints:
         for first, second in part.tolist():
             if not dropped[first]:
                 dropped[second] = 1
-    return ids[np.frombuffer(dropped, bool)]
+    gone: Ints = ids[np.frombuffer(dropped, bool)]
+    return gone
