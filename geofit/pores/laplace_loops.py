@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 
 __all__ = ["assemble", "conjugate_gradients"]
 
+#: Steps between two looks at the error.
+_LOOK = 25
+
 
 @njit(cache=True)
 def assemble(
@@ -57,12 +60,23 @@ def conjugate_gradients(
     start: NDArray[np.float64],
     tolerance: float,
     most: int,
-) -> tuple[NDArray[np.float64], int]:
+) -> tuple[float, int]:
     """Solve with an incomplete Cholesky factor without fill as preconditioner.
+
+    The flow is the energy of the pressures: its error is of second order in theirs, the square of their error in the
+    norm of the matrix. What the last steps took off that bounds what is left (Hestenes & Stiefel 1952). A residual
+    says less: a rock lets a thousandth of its faces' conductance through.
+
+    Parameters
+    ----------
+    source : ndarray, shape (n,)
+        Conductances to the face of pressure 1.
+    tolerance : float
+        Largest relative error of the flow.
 
     Returns
     -------
-    pressure : ndarray
+    flow : float
     steps : int
         -1 if ``most`` steps were not enough.
     """
@@ -84,13 +98,17 @@ def conjugate_gradients(
     direction = z.copy()
     image = np.empty(n)
     product = (residual * z).sum()
-    scale = source.sum()
+    gained, rounding = 0.0, 1e-24 * source.sum()
     for step in range(most):
-        if np.abs(residual).sum() <= tolerance * scale * 10.0 and np.abs(residual.sum()) <= tolerance * scale:
-            return x, step
+        if step % _LOOK == 0 or product <= rounding:
+            flow = (source * (1.0 - x)).sum() - (x * residual).sum()
+            if product <= rounding or (step and gained <= tolerance * flow):
+                return flow, step
+            gained = 0.0
         image[:] = 0.0
         _apply(neighbour, conductance, diagonal, direction, image, 1.0)
         alpha = product / (direction * image).sum()
+        gained += alpha * product
         for row in range(n):
             x[row] += alpha * direction[row]
             residual[row] -= alpha * image[row]
@@ -100,7 +118,7 @@ def conjugate_gradients(
         product = new
         for row in range(n):
             direction[row] = z[row] + beta * direction[row]
-    return x, -1
+    return 0.0, -1
 
 
 @njit(cache=True)

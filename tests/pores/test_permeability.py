@@ -115,6 +115,35 @@ def test_simple_cubic_packs(solid):
     assert laplace_permeability(volume_of(pore)).square_metres[0] == pytest.approx(truth, rel=0.25)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_the_solve_is_that_of_a_direct_solver_where_throats_are_narrow(seed):
+    """Blobs that hardly percolate: their flow is a small part of what the faces would let through."""
+    from scipy import ndimage, sparse
+
+    from geofit.pores.laplace import mobility
+    from geofit.pores.laplace_loops import assemble
+
+    field = ndimage.gaussian_filter(np.random.default_rng(seed).random((44, 40, 40)), 2.0)
+    for share in (0.12, 0.15, 0.18, 0.22, 0.3):
+        label = ndimage.label(field < np.quantile(field, share))[0]
+        through = np.intersect1d(label[0][label[0] > 0], label[-1][label[-1] > 0])
+        if len(through):
+            break
+    pore = np.isin(label, through)
+    volume = volume_of(pore)
+    order = np.flatnonzero(pore)
+    number = np.full(pore.shape, -1, np.int32)
+    number.ravel()[order] = np.arange(len(order))
+    (neighbour, link), diagonal, source = assemble(mobility(volume), number, order, 0, np.ones(3))
+    row, d = np.nonzero(neighbour >= 0)
+    lower = sparse.coo_array((-link[row, d], (row, neighbour[row, d])), shape=(len(order),) * 2)
+    pressure = sparse.linalg.spsolve((lower + lower.T + sparse.diags_array(diagonal)).tocsc(), source[0])
+    flow = (source[1] * pressure).sum()
+    assert flow < 0.02 * source[0].sum()
+    truth = flow * pore.shape[0] ** 2 / pore.size
+    assert laplace_permeability(volume).square_metres[0] == pytest.approx(truth, rel=3e-3)
+
+
 def test_no_path_is_zero_with_a_message_and_no_error():
     pore = np.zeros((12, 10, 10), bool)
     pore[:5, 3:7, 3:7] = True
