@@ -310,7 +310,8 @@ def section(found: dict[str, dict[str, Figures]], count: int) -> str:
             lines.append(
                 f"| {kind}, {title} | {r['moving']:,.0f} | {r['frame']:.0f} | {r['rate']:.0f} | {r['still']:,.0f} "
                 f"| {r['rest']:.2f} | {r['pick']:.1f}, {r['slowest pick']:.1f} "
-                f"| {r['first surface']:.1f}, {r['surface']:.1f}, {r['slowest surface']:.1f} | {r['same']:.0f} of {CHECKED} |"
+                f"| {r['first surface']:.1f}, {r['surface']:.1f}, {r['slowest surface']:.1f} "
+                f"| {r['same']:.0f} of {CHECKED} |"
             )
     lines.append("")
     row = found["frames"]["even"]
