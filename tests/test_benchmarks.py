@@ -195,17 +195,24 @@ def test_without_data_real_says_so_and_exits_with_2(tmp_path):
 def test_the_section_on_drawing_takes_the_place_of_the_last_one(load):
     drawing = load("drawing")
     view = {"moving": 9e3, "frame": 25, "rate": 30, "still": 8e5, "rest": 0.4, "pick": 2, "slowest pick": 5}
-    view |= {"first surface": 3, "surface": 1, "slowest surface": 3, "same": 10}
+    view |= {"first surface": 3, "surface": 1, "slowest surface": 3, "same": 5}
     frames = {f"{name} {key}": value for name in ("all", "near") for key, value in view.items()}
     frames |= {"shown": 1.5, "before": 800, "after": 840, "drawn": 1200, "input": 229, "load": 1}
     triangles = {"count": 1e6, "cpu": 0.5, "tolerance": 0.01, "error": 0.009}
     found = {
         "triangles": {"waves": triangles, "rough": triangles, "outline": triangles},
         "frames": {"even": frames, "stations": {**frames, "near frame": 40}},
+        "opened": {
+            "1000": {"before": 500, "after": 600, "peak": 600, "points": 1_000},
+            "1049576": {"before": 500, "after": 700, "peak": 710, "points": 1_049_576},
+        },
     }
     text = drawing.section(found, 10_000_000)
-    assert "25 frames/s" in text
-    assert "10 of 10" in text
+    told = " ".join(text.split())
+    assert "at most 40 ms of the processor: at least 25 frames/s" in told
+    assert "5 of 5" in told
+    assert "takes 200 MB in the window" in told
+    assert ": 100 bytes for each point" in told
     page = drawing.with_section("# Scale\n\nText.\n", text)
     assert drawing.with_section(page, text) == page
     assert drawing.drawing_section(page).rstrip() == text.rstrip()

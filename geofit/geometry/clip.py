@@ -114,13 +114,17 @@ class _Raster:
 
 def inside(outline: Floats, plan: Floats) -> NDArray[np.bool_]:
     """Whether (n, 2) places are inside a polygon (k, 2), by the parity of crossings."""
+    order = np.argsort(plan[:, 1], kind="stable")
+    x, y = plan[order].T
     odd = np.zeros(len(plan), bool)
-    x, y = plan.T
     for (x0, y0), (x1, y1) in zip(outline, np.roll(outline, -1, axis=0), strict=True):
         if y0 != y1:
-            crosses = (y0 > y) != (y1 > y)
-            odd ^= crosses & (x < x0 + (y - y0) * ((x1 - x0) / (y1 - y0)))
-    return odd
+            # Of the places from south to north those beside this side of the polygon.
+            beside = slice(*np.searchsorted(y, sorted((y0, y1))))
+            odd[beside] ^= x[beside] < x0 + (y[beside] - y0) * ((x1 - x0) / (y1 - y0))
+    found = np.empty(len(plan), bool)
+    found[order] = odd
+    return found
 
 
 def _distinct(outline: Floats) -> Floats:
@@ -248,13 +252,12 @@ class _Work:
 
     def _halve(self, k: int, i: int, j: int, number: int, t: float) -> int:
         """Divide triangle k at a vertex on its edge (i, j), at t from i; return the number of the new half."""
-        uv = self.uv[k, i] + t * (self.uv[k, j] - self.uv[k, i])
         self._copy(k, 1)
-        self.triangles[k, j] = number
-        self.uv[k, j] = uv
-        self.triangles[-1, i] = number
-        self.uv[-1, i] = uv
-        return len(self.triangles) - 1
+        triangles, corners = self.triangles, self.uv
+        uv = corners[k, i] + t * (corners[k, j] - corners[k, i])
+        triangles[k, j] = triangles[-1, i] = number
+        corners[k, j] = corners[-1, i] = uv
+        return len(triangles) - 1
 
     def _fan(self, k: int, number: int, share: Floats) -> None:
         """Divide triangle k into three at a vertex inside it."""

@@ -168,3 +168,27 @@ def test_another_fit_is_not_covered_by_what_was_made_of_the_old_one(qtbot):
     view.sharpen(surface, drawn_of(surface))
     assert view.contents.drawn[other.name] is known
     view.close()
+
+
+def test_the_window_sharpens_a_surface_that_one_comes_near_to(app):
+    from panel_samples import SITE, fitted, sample_site
+
+    from geofit.project.commands import SetSurface
+
+    name = "T3-T2"
+    app.desktop.session.begin(sample_site(), SITE)
+    provenance = app.document.provenance(name)
+    app.document.put(provenance, fitted())
+    app.window.fitting.push(SetSurface(provenance))
+    app.idle()
+    view = app.window.panels.view
+    before = view.contents.drawn[name]
+    place = before.shape.xyz[len(before.shape.xyz) // 2]
+    view.canvas.look(replace(view.canvas.viewpoint, centre=place - view.canvas.origin, distance=25.0))
+    view.layers.change(f"surface:{name}", opacity=0.9)
+    app.qtbot.waitUntil(lambda: view.contents.drawn[name].sight is not None, timeout=20_000)
+    app.idle()
+    after = view.contents.drawn[name]
+    assert len(after.shape.triangles) > len(before.shape.triangles)
+    assert len(after.supported[0]) == len(after.shape.triangles)
+    assert not app.failures
