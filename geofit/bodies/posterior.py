@@ -50,6 +50,8 @@ ON_SURFACE = math.erfc(SHIFT / math.sqrt(2)) / 2
 #: The factor with which 80 % of their volumes fall between P10 and P90. It is larger: what a field of one roughness
 #: misses of a shape is the same all over a body and does not cancel in its volume.
 SPREAD = 1.0
+#: The same factor between sections: what is missed there is missed along the whole gap. Found on twenty bodies.
+SPREAD_BETWEEN = 1.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,15 +92,26 @@ class BodyPosterior:
             count = min(count, CONTACTS)
         value = self.body.field.interpolant.value(system.points)
         weights = system.interpolate(value, self._slopes).weights
-        section = sections_of(self.body.data, self.body.field.frame.to_map(system.points))
-        if section is not None and not len(system.oriented):
-            return max(BETWEEN * block_scale(system, weights, count, section), 1e-9)
+        if self.sections is not None:
+            return max(BETWEEN * block_scale(system, weights, count, self.sections), 1e-9)
         weights = weights[:count]
         precision = system.precision()[:count]
         own = np.sqrt(np.mean(weights**2 / np.maximum(precision, 1e-300)))
         spacing = self.body.region.spacing
         usual = USUAL * spacing / (spacing / self.body.field.frame.size) ** 1.5
         return float(np.exp((count * np.log(max(own, 1e-6 * usual)) + TRUST * np.log(usual)) / (count + TRUST)))
+
+    @cached_property
+    def sections(self) -> NDArray[np.str_] | None:
+        """The section of each point of the system, "" of none; None for data of holes, or with normals."""
+        if len(self.system.oriented):
+            return None
+        return sections_of(self.body.data, self.body.field.frame.to_map(self.system.points))
+
+    @property
+    def spread(self) -> float:
+        """The factor of the standard deviation with which volumes are drawn."""
+        return SPREAD if self.sections is None else SPREAD_BETWEEN
 
     @property
     def _slopes(self) -> Floats:
