@@ -17,7 +17,7 @@ from geofit.io.dxf import closed_lines
 from geofit.io.journal import Journal
 from geofit.io.mapping import load_mappings
 from geofit.io.sections import Drawing, lift, off_line_reason
-from geofit.io.site_drawings import placed_levels, placed_sections, section_lines
+from geofit.io.site_drawings import placed_levels, placed_sections, plan_lines
 from geofit.io.site_keys import Reader
 from geofit.io.source import Source
 
@@ -43,7 +43,7 @@ def site_outlines(source: Source, journal: Journal) -> list[tuple[str, Floats, s
         reader.mappings = load_mappings(source.path.parent / mapping)
     rings: list[tuple[str, Floats, str]] = []
     drawings = 0
-    for section, file, drawing in placed_sections(reader, top, section_lines(reader, top, journal)):
+    for section, file, drawing in placed_sections(reader, top, plan_lines(reader, top, journal)):
         if not _is_drawing(file):
             continue
         drawings += 1

@@ -19,12 +19,12 @@ from geofit.io.sections import Drawing, load_level, load_lines, load_section, lo
 from geofit.io.site_keys import Reader
 from geofit.io.source import Source
 
-__all__ = ["gather", "placed_levels", "placed_sections", "read_sections", "section_lines"]
+__all__ = ["gather", "placed_levels", "placed_sections", "plan_lines", "read_sections"]
 
 Floats = NDArray[np.float64]
 
 
-def section_lines(
+def plan_lines(
     reader: Reader, top: Mapping[str, Any], journal: Journal, region: Region | None = None
 ) -> dict[str, Floats]:
     """Return the lines of sections in plan that the [section_lines] tables hold."""
@@ -105,7 +105,7 @@ def read_sections(
     gathered: dict[str, list[PointSet]],
 ) -> tuple[Section, ...]:
     """Read the section lines, the [[section]] and the [[level]] tables; points go to ``gathered``."""
-    lines = section_lines(reader, top, journal, region)
+    lines = plan_lines(reader, top, journal, region)
     sections: list[Section] = []
     for section, source, drawing in placed_sections(reader, top, lines, region):
         sections.append(section)

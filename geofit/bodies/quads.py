@@ -17,12 +17,13 @@ from geofit.implicit.field import Field
 from geofit.implicit.mesh import TriangleMesh
 from geofit.splines.patch import Patch
 
-__all__ = ["Patchable", "PatchedSurface", "patched_surface"]
+__all__ = ["PartOfBody", "Patchable", "PatchedSurface", "fit_part", "patched_surface"]
 
 Floats = NDArray[np.float64]
 
-#: Patches of a body at most, and of a part at least as a rule.
+#: Patches of a body at most; more where it has many parts, each its share; and of a part at least as a rule.
 MOST = 500
+EACH = 50
 FEWEST = 24
 
 
@@ -82,7 +83,7 @@ def patched_surface(body: Patchable, tolerance: float | None = None) -> PatchedS
     Raises
     ------
     FitError
-        If 500 patches do not suffice, or the body is cut at its box, where it has edges.
+        If a part has no patches (see :func:`fit_part`), or the body is cut at its box, where it has edges.
     """
     cut = body.cut_sides
     if cut:
@@ -99,49 +100,105 @@ def patched_surface(body: Patchable, tolerance: float | None = None) -> PatchedS
     if tolerance is None:
         tolerance = min(body.epsilon / 2, 1e-3 * float((upper - lower).max()))
     parts = mesh.split()
-    components, left = [], MOST
-    deviation = angle = 0.0
-    for k, part in enumerate(parts):
+    left = max(MOST, EACH * len(parts))
+    fits: dict[int, PatchFit] = {}
+    # The largest first: where it has no patches, the others need not be tried.
+    for done, k in enumerate(sorted(range(len(parts)), key=lambda k: -len(parts[k].triangles)), 1):
         others = mesh.only(mesh.component_of != k)
-        fit = _fitted(body.field, part, others, tolerance, left - FEWEST * (len(parts) - k - 1))
+        given = PartOfBody(k + 1, len(parts), min(MOST, left - FEWEST * (len(parts) - done)))
+        fits[k] = fit_part(body.field, parts[k], others, tolerance, given)
+        left -= len(fits[k].control)
+    components = []
+    for k in range(len(parts)):
         prefix = f"{k + 1}." if len(parts) > 1 else ""
         components.append(
             tuple(
-                Patch(f"{prefix}{i + 1}", (3, 3), fit.knots(len(control)), fit.knots(len(control)), control)
-                for i, control in enumerate(fit.control)
+                Patch(f"{prefix}{i + 1}", (3, 3), PatchFit.knots(len(control)), PatchFit.knots(len(control)), control)
+                for i, control in enumerate(fits[k].control)
             )
         )
-        left -= len(fit.control)
-        deviation, angle = max(deviation, fit.deviation), max(angle, fit.seam_angle)
-    return PatchedSurface(tuple(components), deviation, angle)
+    deviation = max((fit.deviation for fit in fits.values()), default=0.0)
+    return PatchedSurface(tuple(components), deviation, max((fit.seam_angle for fit in fits.values()), default=0.0))
 
 
-def _fitted(field: Field, component: TriangleMesh, others: TriangleMesh, tolerance: float, most: int) -> PatchFit:
-    """Return the patches of the layout of fewest quadrilaterals that stays within the tolerance."""
-    best = (np.inf, np.inf)
-    for layout in quad_meshes(field, component, others, most):
+@dataclass(frozen=True)
+class PartOfBody:
+    """Number of a part of a body, from 1, of how many, and the patches that it may have at most."""
+
+    number: int
+    parts: int
+    most: int
+
+
+def fit_part(
+    field: Field, component: TriangleMesh, others: TriangleMesh, tolerance: float, part: PartOfBody
+) -> PatchFit:
+    """Return the patches of one part of a body: of the layout of fewest quadrilaterals within the tolerance.
+
+    Parameters
+    ----------
+    field : Field
+        The field; its zero set is the surface.
+    component, others : TriangleMesh
+        The part's triangles, and those of the rest of the surface (maybe none).
+    tolerance : float
+        Largest distance in metres between patches and surface.
+    part : PartOfBody
+        Which part it is, and the patches that it may have.
+
+    Raises
+    ------
+    FitError
+        ``bodies.part-without-layout`` if no layout has the topology of the part, ``bodies.part-folds`` if the places of
+        every layout fold over, ``bodies.patches-off-body`` if no patches stay within the tolerance.
+    """
+    best, folded, tried = (np.inf, np.inf), 0, 0
+    for layout in quad_meshes(field, component, others, part.most):
+        tried += 1
         grids = relaxed_grids(field, layout)
         if grids is None:
+            folded += 1
             continue
         fit = fit_patches(field, layout, grids, tolerance)
         if fit.deviation <= tolerance and fit.seam_angle <= ANGLE:
             return fit
         best = min(best, (fit.deviation, fit.seam_angle))
+    size, volume = float(np.ptp(component.vertices, axis=0).max()), abs(component.volume)
+    which = message(
+        "bodies.part-of-body",
+        "part {number} of {parts} ({size:.0f} m long, {volume:.3g} m3)",
+        number=part.number,
+        parts=part.parts,
+        size=size,
+        volume=volume,
+    )
+    if not tried:
+        raise FitError(
+            message(
+                "bodies.part-without-layout",
+                "Layout of patches: no raster of at most {most} quadrilaterals has all branches, necks and holes of "
+                "{which}: it is thin or ragged against the cells of its triangles. Write triangles.",
+                most=part.most,
+                which=which,
+            )
+        )
     if not np.isfinite(best[0]):
         raise FitError(
             message(
-                "bodies.too-many-patches",
-                "The body needs more than {most} patches: it has many parts, or a shape of many branches. Write "
-                "triangles.",
-                most=MOST,
+                "bodies.part-folds",
+                "Places of patches: in {folded} of {tried} layouts of {which} the surface turns back within a patch: "
+                "it has folds finer than that. Write triangles.",
+                folded=folded,
+                tried=tried,
+                which=which,
             )
         )
     raise FitError(
         message(
             "bodies.patches-off-body",
-            "{most} patches do not follow the body within {tolerance:.3g} m and {angle:g} degrees at the seams (best: "
-            "{deviation:.3g} m, {turn:.3g} degrees). Allow a larger epsilon, or write triangles.",
-            most=most,
+            "Fit of patches: over {which} they do not stay within {tolerance:.3g} m and {angle:g} degrees at the seams "
+            "(best: {deviation:.3g} m, {turn:.3g} degrees). Allow a larger epsilon, or write triangles.",
+            which=which,
             tolerance=tolerance,
             angle=ANGLE,
             deviation=best[0],

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.bodies.active import farthest_apart
-from geofit.bodies.posterior import SPREAD, BodyPosterior
+from geofit.bodies.posterior import BodyPosterior
 from geofit.bodies.rbf import Saddle, rows_of
 from geofit.streaming.executors import HERE, Where
 
@@ -78,7 +78,7 @@ def draws(body: BodyFit, where: Where = HERE) -> Draws:
     # The nearest ones only: no draw reaches the others, and each variance costs the square of the data.
     order = np.argsort(np.abs(value), kind="stable")[:REACHED]
     nodes, value = nodes[order], value[order]
-    deviation = SPREAD * posterior.deviation(nodes)
+    deviation = posterior.spread * posterior.deviation(nodes)
     near = np.abs(value) < FAR * deviation
     fitted = body.field.frame.to_fit(nodes[near])
     change = changes(body, posterior, fitted[_first_knots(fitted, value[near], deviation[near])], fitted, rng, where)
@@ -137,7 +137,7 @@ def changes(
         return np.zeros((len(places), body.settings.realizations))
     guards, side, held = _guards(body, posterior)
     every = np.concatenate([knots, guards])
-    covariance = (SPREAD * posterior.scale) ** 2 * posterior.system.covariance(every)
+    covariance = (posterior.spread * posterior.scale) ** 2 * posterior.system.covariance(every)
     root, vectors = np.linalg.eigh(covariance)
     factor = vectors * np.sqrt(np.maximum(root, 0.0))
     drawn = factor @ rng.standard_normal((len(every), body.settings.realizations))

@@ -20,7 +20,7 @@ from geofit.implicit.mesh import TriangleMesh
 from geofit.project.body_record import Intervals, Outlines, SurfacePicks
 from geofit.project.body_sources import read_body_source
 
-__all__ = ["BodyPreview", "preview_body", "thinned"]
+__all__ = ["BodyPreview", "preview_body", "thinned_data"]
 
 #: Contacts and samples of each side that a preview is fitted to, and cells along its longest side.
 CONTACTS = 300
@@ -51,7 +51,7 @@ def preview_body(
     """
     tell(progress, "read", 0.0)
     data = read_body_source(source, settings, campaigns, folder, progress).data
-    few = thinned(data)
+    few = thinned_data(data)
     tell(progress, "fit", 0.3)
     fitted = fit_field(few, settings)
     tell(progress, "triangles", 0.7)
@@ -62,7 +62,7 @@ def preview_body(
     return BodyPreview(TriangleMesh(mesh.vertices + body.origin, mesh.triangles), len(few.contacts), len(data.contacts))
 
 
-def thinned(data: BodyData, contacts: int = CONTACTS, samples: int = SAMPLES) -> BodyData:
+def thinned_data(data: BodyData, contacts: int = CONTACTS, samples: int = SAMPLES) -> BodyData:
     """Return at most so many contacts, spread over the body, and samples of each side at regular intervals."""
     if max(len(data.contacts) - contacts, len(data.inside) - samples, len(data.outside) - samples) <= 0:
         return data

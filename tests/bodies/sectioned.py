@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bodies.planted import ORIGIN, SIZE, Truth, ellipsoid
-from bodies.shapes import KINDS, horn
+from bodies.shapes import KINDS, OTHERS, horn
 from geofit.bodies.fit import fit_body
 from geofit.bodies.outlines import Outline, from_outlines
+from geofit.bodies.posterior import BodyPosterior
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -38,6 +39,41 @@ def left_out(name: str, count: int) -> tuple[float, float]:
         scores.append((_overlap(inside, got), _overlap(inside, near[0] + near[1] < 0)))
     ours, linear = np.mean(scores, axis=0).tolist()
     return ours, linear
+
+
+def sectioned_case(seed: int) -> tuple[str, Truth, list[Outline]]:
+    """Return a body of one of fifteen kinds, its kind first, and its outlines on 4 to 10 planes across any axis."""
+    rng, kinds = np.random.default_rng(31_000 + seed), {**KINDS, **OTHERS}
+    kind = list(kinds)[seed % len(kinds)]
+    truth = kinds[kind](rng)
+    axis, count = int(rng.integers(3)), int(rng.integers(4, 11))
+    line = np.linspace(-1, 1, 81)
+    nodes = np.stack(np.meshgrid(line, line, line, indexing="ij"), axis=-1).reshape(-1, 3)
+    along = nodes[truth(nodes) < 0, axis]
+    at = along.min() + (np.arange(count) + rng.uniform(0.2, 0.8)) / count * np.ptp(along)
+    return kind, truth, [o for k, x in enumerate(at.tolist()) for o in _outlines(truth, axis, x, str(k))]
+
+
+def surface_places(truth: Truth, seed: int, count: int) -> Floats:
+    """Return places (count, 3) on the surface of a body in the box [-1, 1]^3, where lines at random cross it."""
+    rng, line, found = np.random.default_rng(seed), np.linspace(-1, 1, 161), np.zeros((0, 3))
+    while len(found) < count:
+        axis = int(rng.integers(3))
+        way = np.insert(np.tile(rng.uniform(-0.95, 0.95, 2), (len(line), 1)), axis, line, axis=1)
+        value = truth(way)
+        at = np.flatnonzero((value[1:] < 0) != (value[:-1] < 0))
+        share = (value[at] / (value[at] - value[at + 1]))[:, None]
+        found = np.concatenate([found, way[at] + share * (way[at + 1] - way[at])])
+    return found[:count]
+
+
+def band_share(seed: int, count: int = 200) -> tuple[str, float]:
+    """Return the kind of a body, and the share of its true surface in the 80 % band of the body of its outlines."""
+    kind, truth, outlines = sectioned_case(seed)
+    chance = BodyPosterior(fit_body(from_outlines(outlines))).probability(
+        surface_places(truth, seed, count) * SIZE + ORIGIN
+    )
+    return kind, float(((chance > 0.1) & (chance < 0.9)).mean())
 
 
 def _plane(truth: Truth, axis: int, at: float) -> tuple[Floats, Bools]:

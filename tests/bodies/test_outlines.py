@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from bodies.planted import ORIGIN
-from bodies.sectioned import left_out
+from bodies.planted import ORIGIN, drilled, ellipsoid
+from bodies.sectioned import band_share, left_out
+from geofit.bodies.clusters import sections_of
 from geofit.bodies.fit import fit_body
 from geofit.bodies.outlines import Outline, from_outlines, section_planes
 from geofit.bodies.questions import section_questions
@@ -52,6 +53,23 @@ def test_a_left_out_section_of_bodies_that_bend_and_branch(name: str, count: int
     ours, linear = left_out(name, count)
     assert ours > least
     assert ours > linear + 0.02
+
+
+def test_the_band_between_sections_holds_the_true_surface_of_varied_bodies() -> None:
+    """80 % of it; scaled by contacts left out one by one, next to their neighbours on the outline, it held 67 %."""
+    shares = [band_share(seed)[1] for seed in range(200, 230)]
+    assert 0.74 <= np.mean(shares) <= 0.86
+    assert np.median(shares) > 0.74
+
+
+def test_data_of_holes_are_no_sections() -> None:
+    holes = drilled(ellipsoid((0.6, 0.4, 0.3))[0], 3, rows=7)
+    assert sections_of(holes, holes.contacts) is None
+    outlines = from_outlines([tube(name, x, 0, 15) for name, x in (("1", 0.0), ("2", 20.0), ("3", 40.0))])
+    places = np.concatenate([outlines.contacts, outlines.contacts[:1] + 5.0])
+    names = sections_of(outlines, places)
+    assert names is not None
+    assert names.tolist() == [*outlines.hole.tolist(), ""]
 
 
 def test_an_outline_within_another_is_a_hole() -> None:

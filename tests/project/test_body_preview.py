@@ -13,7 +13,7 @@ from geofit.bodies.outlines import from_outlines
 from geofit.bodies.settings import BodySettings
 from geofit.data.errors import Cancelled
 from geofit.io.outlines import read_outlines
-from geofit.project.body_preview import preview_body, thinned
+from geofit.project.body_preview import preview_body, thinned_data
 from geofit.project.body_record import Outlines
 
 ANGLE = np.linspace(0, 2 * np.pi, 60, endpoint=False)
@@ -56,9 +56,9 @@ def test_a_preview_stops_between_its_stages(outlines: Path) -> None:
 
 def test_thinned_data_keep_their_names_and_lengths() -> None:
     data = drilled(ellipsoid((0.6, 0.4, 0.3))[0], 3, rows=9)
-    few = thinned(data, 20, 100)
+    few = thinned_data(data, 20, 100)
     assert len(few.contacts) == 20
     assert max(len(few.inside), len(few.outside)) <= 100
     rows = {tuple(xyz): name for xyz, name in zip(data.contacts.tolist(), data.hole.tolist(), strict=True)}
     assert [rows[tuple(xyz)] for xyz in few.contacts.tolist()] == few.hole.tolist()
-    assert thinned(few, 20, 100) is few
+    assert thinned_data(few, 20, 100) is few
