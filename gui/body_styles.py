@@ -1,4 +1,4 @@
-"""How bodies are drawn, named and deleted: from the tree, its menu, the panel and the scene list to commands."""
+"""How bodies are drawn, named and deleted: from the tree, its menu, the panel and the scene to commands."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ class BodyStyles(QObject):
             self._rest.start()
 
     def _take_over(self) -> None:
-        """Take what was changed in the scene list into the document."""
+        """Take what was changed in the scene into the document."""
         layers = self._panels.view.layers
         for name, record in tuple(self._document.state.bodies.items()):
             key = f"body:{name}"

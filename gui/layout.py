@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QDockWidget, QMainWindow, QTabBar, QToolBar
 __all__ = ["BOTTOM", "Layout"]
 
 #: Of the layout that is remembered; one more when docks come or go.
-VERSION = 4
+VERSION = 5
 _Area = Qt.DockWidgetArea
 #: What folds away below the view.
 BOTTOM = (
@@ -18,7 +18,7 @@ BOTTOM = (
     "body_figures", "morph", "log",
 )  # fmt: skip
 _PLACES = (
-    (_Area.LeftDockWidgetArea, ("tree", "scene"), False),
+    (_Area.LeftDockWidgetArea, ("tree",), False),
     (_Area.RightDockWidgetArea, ("fit", "adjust", "bodies"), True),
     (_Area.BottomDockWidgetArea, BOTTOM, True),
 )
@@ -117,10 +117,9 @@ class Layout(QObject):
                 else:
                     window.addDockWidget(area, docks[name])
             docks[names[0]].raise_()
-        width, height = window.width(), window.height()
+        width = window.width()
         sides = [round(_LEFT * width), round(_RIGHT * width)]
         window.resizeDocks([docks["tree"], docks["fit"]], sides, Qt.Orientation.Horizontal)
-        window.resizeDocks([docks["tree"], docks["scene"]], [height // 2, height // 2], Qt.Orientation.Vertical)
         self._hide_lost_tabs()
         self._unfolded = set(BOTTOM)
         for name in BOTTOM:

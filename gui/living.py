@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
@@ -108,7 +109,7 @@ class Living(QObject):
         else:
             view.show_listing(name, listing(picks.points, frozenset(), None))
 
-    def _build(self, name: str, rule: ContactRule) -> None:
+    def _build(self, name: str, rule: ContactRule, order: tuple[str, ...]) -> None:
         tables: tuple[str, ...] = ()
 
         def work() -> Work:
@@ -122,7 +123,7 @@ class Living(QObject):
             return read_again, (document.site_file, tables)
 
         title = self.tr("Build {name}").format(name=name)
-        self._activity.prepare(title, work, on_done=lambda site: self._take(site, tables))
+        self._activity.prepare(title, work, on_done=lambda site: self._take(site, tables, order))
 
     def look(self) -> None:
         """Look whether files of the site have changed on the disk, and offer to reload them."""
@@ -171,9 +172,15 @@ class Living(QObject):
     def _read_again(self, site: Site) -> None:
         self._take(site, self._document.state.added)
 
-    def _take(self, site: Site, tables: tuple[str, ...]) -> None:
+    def _take(self, site: Site, tables: tuple[str, ...], order: tuple[str, ...] = ()) -> None:
+        """Work on with other data; new horizons stand where ``order`` has them, the highest first."""
         document = self._document
         change = change_of_data(document.state, document.read, site, tables)
+        if order:
+            settings = change.command.settings
+            names = [*(name for name in order if name in settings), *(name for name in settings if name not in order)]
+            ordered = replace(change.command, settings={name: settings[name] for name in names})
+            change = replace(change, command=ordered)
         if change.command.data == document.state.data:
             self.reported.emit(self.tr("The data are the same: nothing has changed."))
             return

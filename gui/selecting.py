@@ -40,7 +40,7 @@ class Selecting(QObject):
             table.connect(self._chosen_here)
         panels.prediction.suggestion_chosen.connect(self._suggestion_chosen)
         panels.checks.place_chosen.connect(panels.view.focus_place)
-        panels.scene.zoom_requested.connect(panels.view.zoom_to)
+        panels.tree.zoom_requested.connect(panels.view.zoom_to)
         panels.seams.seam_chosen.connect(self._seam_chosen)
         document.selection_changed.connect(self._show)
 

@@ -22,7 +22,6 @@ from geofit.gui.panels.plan import PlanPanel
 from geofit.gui.panels.prediction import PredictionPanel
 from geofit.gui.panels.project_tree import ProjectTree
 from geofit.gui.panels.residuals import ResidualTable
-from geofit.gui.panels.scene_list import SceneList
 from geofit.gui.panels.seams import SeamTable
 from geofit.gui.panels.section import SectionPanel
 from geofit.gui.panels.stereonet import StereonetPanel
@@ -52,7 +51,7 @@ class Workspace(QObject):
         self.middle.addWidget(beside)
         self.middle.setChildrenCollapsible(False)
         window.setCentralWidget(self.middle)
-        self.tree, self.scene = ProjectTree(), SceneList(self.view.layers)
+        self.tree = ProjectTree(self.view.layers)
         self.fit, self.verdict, self.adjust = FitPanel(), VerdictBadge(), AdjustPanel()
         self.residuals, self.section, self.histogram = ResidualTable(), SectionPanel(), HistogramPanel()
         self.log, self.seams, self.checks = LogPanel(), SeamTable(), ChecksPanel()
@@ -61,7 +60,6 @@ class Workspace(QObject):
         self.bodies, self.body_figures, self.morph = BodiesPanel(), BodyFigures(), MorphPanel()
         self.docks = {
             "tree": self._dock("tree", self.tr("Project"), self.tree),
-            "scene": self._dock("scene", self.tr("Scene"), self.scene),
             "fit": self._dock("fit", self.tr("Fit"), _stacked(_inset(self.verdict), self.fit)),
             "adjust": self._dock("adjust", self.tr("Manual edit"), self.adjust),
             "bodies": self._dock("bodies", self.tr("Bodies"), self.bodies),

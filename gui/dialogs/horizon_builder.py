@@ -25,6 +25,7 @@ from PySide6.QtWidgets import (
 
 from geofit.data.errors import GeofitError
 from geofit.data.site import Site
+from geofit.gui.dialogs.horizon_place import HorizonPlace
 from geofit.gui.translate import failure
 from geofit.io.contact_rules import ContactRule
 from geofit.project.horizon_builder import RulePicks, codes_of, picks_of
@@ -35,15 +36,20 @@ _NUMBER = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 
 
 class HorizonBuilder(QDialog):
-    """Builds rules; ``previewed(picks)`` after each change (None: nothing to show), ``built(name, rule)`` by Add."""
+    """Builds rules; ``previewed(picks)`` after each change (None: nothing to show).
+
+    ``built(name, rule, order)`` comes from Add, with all horizons in the order that they shall have, the highest first.
+    """
 
     previewed = Signal(object)
-    built = Signal(str, object)
+    built = Signal(str, object, object)
 
-    def __init__(self, site: Site, taken: Sequence[str], parent: QWidget | None = None) -> None:
+    def __init__(self, site: Site, order: Sequence[str], parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setWindowTitle(self.tr("Build a horizon from lithology"))
-        self._site, self._taken = site, {name.casefold() for name in taken}
+        self._site, self._taken = site, {name.casefold() for name in order}
+        levels = {name: float(points.xyz[:, 2].mean()) for name, points in site.horizons.items() if len(points)}
+        self.place = HorizonPlace(order, levels)
         self._named = False
         self.picks: RulePicks | None = None
         self._items: list[QTableWidgetItem] = []
@@ -89,6 +95,7 @@ class HorizonBuilder(QDialog):
             (self.tr("&Name"), self.name),
         ):
             form.addRow(words, field)
+        form.addRow(self.tr("Order"), self.place)
         side = QVBoxLayout()
         side.addLayout(form)
         side.addWidget(self.words)
@@ -105,7 +112,7 @@ class HorizonBuilder(QDialog):
         self.thinner.valueChanged.connect(self.renew)
         self.name.textEdited.connect(self._name_edited)
         self.add.clicked.connect(self._build)
-        self.resize(820, 420)
+        self.resize(860, 500)
         self.renew()
 
     def rule(self) -> ContactRule | None:
@@ -140,6 +147,7 @@ class HorizonBuilder(QDialog):
                     words.format(count=len(self.picks.points), holes=self.picks.carrying, unseen=self.picks.unseen)
                 )
         self._enable()
+        self._place()
         self.previewed.emit(self.picks)
 
     def done(self, result: int) -> None:
@@ -167,16 +175,24 @@ class HorizonBuilder(QDialog):
     def _name_edited(self) -> None:
         self._named = True
         self._enable()
+        self._place()
 
     def _enable(self) -> None:
         name = self.name.text().strip()
         able = self.picks is not None and len(self.picks.points) > 0
         self.add.setEnabled(able and bool(name) and name.casefold() not in self._taken)
 
+    def _place(self) -> None:
+        """Show where the horizon stands among the others."""
+        picked = self.picks is not None and len(self.picks.points) > 0
+        level = float(self.picks.points.xyz[:, 2].mean()) if self.picks is not None and picked else None
+        self.place.show_horizon(self.name.text().strip(), level)
+
     def _build(self) -> None:
         rule, name = self.rule(), self.name.text().strip()
         if rule is not None:
             self._taken.add(name.casefold())
             self._named = False
-            self.built.emit(name, rule)
+            self.built.emit(name, rule, self.place.order)
+            self.place.keep()
             self.check()

@@ -15,6 +15,8 @@ from geofit.report.style import FAIL, PASS, QUIET, WARNING
 __all__ = ["icon", "level_mark", "readable", "verdict_mark"]
 
 _SIZE = 16
+#: A horizon's colour and its verdict side by side are so wide.
+_PAIR = 32
 _RATIOS = (1.0, 1.25, 1.5, 2.0)
 
 
@@ -40,15 +42,21 @@ def level_mark(level: Level) -> str:
 
 @lru_cache(maxsize=128)
 def icon(name: str) -> QIcon:
-    """Return a mark by name: passed, warning, failed, stale; hole, section, ...; up, dot, horizon with a colour."""
+    """Return a mark by name: passed, warning, failed, stale; hole, section, ...; up, dot, horizon with a colour.
+
+    Two names with a plus sign between them are two marks side by side.
+    """
     made = QIcon()
     for ratio in _RATIOS:
-        pixmap = QPixmap(round(_SIZE * ratio), round(_SIZE * ratio))
+        swatch, _, mark = name.rpartition("+")
+        pixmap = QPixmap(round((_PAIR if swatch else _SIZE) * ratio), round(_SIZE * ratio))
         pixmap.setDevicePixelRatio(ratio)
         pixmap.fill(Qt.GlobalColor.transparent)
         painter = QPainter(pixmap)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        paint(painter, QRectF(1, 1, 14, 14), name)
+        if swatch:
+            paint(painter, QRectF(1, 1, 14, 14), swatch)
+        paint(painter, QRectF(_PAIR - 15 if swatch else 1, 1, 14, 14), mark)
         painter.end()
         for mode in (QIcon.Mode.Normal, QIcon.Mode.Selected, QIcon.Mode.Active):
             made.addPixmap(pixmap, mode)
@@ -115,6 +123,10 @@ def _things(painter: QPainter, box: QRectF, name: str, at: Callable[[float, floa
         path.cubicTo(at(0.18, 0.0), at(0.82, 0.0), at(0.82, 0.45))
         path.lineTo(at(0.82, 0.92))
         painter.drawPath(path)
+    elif name.startswith("layer:"):
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(name.partition(":")[2]))
+        painter.drawRoundedRect(QRectF(at(0.14, 0.14), at(0.86, 0.86)), 2, 2)
     elif name == "section":
         line.setColor(QColor(QUIET))
         painter.setPen(line)

@@ -1,4 +1,4 @@
-"""What the project holds: horizons with their verdicts, holes, adits, sections and reports."""
+"""What the project holds and how the scene shows it: horizons with their verdicts, holes, adits, sections, reports."""
 
 from __future__ import annotations
 
@@ -6,17 +6,29 @@ from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from PySide6.QtCore import QModelIndex, QPoint, QSortFilterProxyModel, Qt, Signal
-from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QLineEdit, QTreeView, QVBoxLayout, QWidget
+from PySide6.QtCore import QModelIndex, QPoint, QSize, QSortFilterProxyModel, Qt, QTimer, Signal
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QLineEdit,
+    QMenu,
+    QSlider,
+    QVBoxLayout,
+    QWidget,
+    QWidgetAction,
+)
 
 from geofit.data.site import Site
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.gui.panels.layer_form import LayerForm
+from geofit.gui.panels.layer_rows import hang, layers_of_row, renew_row
 from geofit.gui.panels.marks import icon, level_mark
 from geofit.gui.panels.placeholder import Placeholder
+from geofit.gui.panels.row_view import RowView
 from geofit.gui.panels.tables import natural
 from geofit.gui.panels.tree_model import TreeModel, TreeRow
 from geofit.gui.translate import translated
+from geofit.gui.view3d.layers import Layers
 from geofit.report.digits import metres
 from geofit.report.style import horizon_colours
 
@@ -37,7 +49,10 @@ class TreeBody:
 
 
 class ProjectTree(QWidget):
-    """The tree of a site. What it shows is chosen here; what the scene shows is the scene list's business."""
+    """The tree of a site, with an eye and an opacity for all that the scene shows; a form has the rest of a layer.
+
+    ``zoom_requested(key)`` asks to bring a layer into the picture.
+    """
 
     horizon_chosen = Signal(str)
     patch_chosen = Signal(str, str)
@@ -47,9 +62,11 @@ class ProjectTree(QWidget):
     menu_requested = Signal(str, str, QPoint)
     body_chosen = Signal(str)
     body_checked = Signal(str, bool)
+    zoom_requested = Signal(str)
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self, layers: Layers, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self.layers, self.form = layers, LayerForm(layers)
         self.search = QLineEdit(clearButtonEnabled=True)
         self.search.setPlaceholderText(self.tr("Filter by name"))
         self.search.setAccessibleName(self.tr("Filter of the project tree"))
@@ -57,9 +74,9 @@ class ProjectTree(QWidget):
         self.pages = Placeholder(content)
         self.setLayout(self.pages)
         # A view that is destroyed asks its model, and a filter its source: what was made first is destroyed first.
-        self.view = QTreeView(content)
+        self.view = RowView(content)
         self.shown = QSortFilterProxyModel(self)
-        self.items = TreeModel((self.tr("Project"), self.tr("Points")), self._checked, self)
+        self.items = TreeModel(self._checked, self)
         self.shown.setSourceModel(self.items)
         self.shown.setRecursiveFilteringEnabled(True)
         self.shown.setAutoAcceptChildRows(True)
@@ -67,7 +84,11 @@ class ProjectTree(QWidget):
         self.view.setModel(self.shown)
         self.view.setAccessibleName(self.tr("Project tree"))
         self.view.setUniformRowHeights(True)
-        self.view.setIndentation(16)
+        self.view.setIndentation(13)
+        self.view.setIconSize(QSize(32, 16))
+        self.view.setHeaderHidden(True)
+        self.view.setMinimumHeight(160)
+        self.view.opacity_asked.connect(self._ask_opacity)
         self.view.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.view.setTextElideMode(Qt.TextElideMode.ElideRight)
         self.search.textChanged.connect(self._filter)
@@ -80,6 +101,11 @@ class ProjectTree(QWidget):
         column.setSpacing(6)
         column.addWidget(self.search)
         column.addWidget(self.view, 1)
+        column.addWidget(self.form)
+        self._later = QTimer(self, singleShot=True, interval=0)
+        self._later.timeout.connect(lambda: self.show_site(*self._given))
+        end = layers.subscribe(self._listen)
+        self.destroyed.connect(lambda: end())
         self._reports: tuple[str, ...] = ()
         self._bodies: tuple[TreeBody, ...] = ()
         self._silent = False
@@ -99,11 +125,13 @@ class ProjectTree(QWidget):
         """
         verdicts = verdicts or {}
         self._given = (site, surfaces, stale, verdicts)
+        self._later.stop()
         if site is None:
             self.items.show([])
+            self.form.show_layer(None)
             self.pages.say(self.tr("No site open: open a site or a project, or drop its files on the window."))
             return
-        chosen, folded = self._chosen(), self._folded()
+        chosen, opened = self._chosen(), self._opened()
         self._silent = True
         groups = [
             self._group(
@@ -125,10 +153,14 @@ class ProjectTree(QWidget):
         groups.append(self._group("sections", self.tr("Sections"), rows))
         rows = [TreeRow(Path(path).name, ("report", path), None, icon("report"), path) for path in self._reports]
         groups.append(self._group("reports", self.tr("Reports"), rows))
+        groups.insert(
+            0, TreeRow(self.tr("Site", "ProjectTree"), ("group", "site"), head=True, rows=hang(self.layers, groups))
+        )
         self.items.show([group for group in groups if group.rows])
-        self._arrange(folded)
+        self._arrange(opened)
         self._go(chosen)
         self._silent = False
+        self._show_form()
         self.pages.reveal()
 
     def show_reports(self, paths: Sequence[str]) -> None:
@@ -159,6 +191,83 @@ class ProjectTree(QWidget):
         self._go(("hole", name))
         self._silent = False
 
+    def choose_layer(self, key: str) -> None:
+        """Go to the row of a layer of the scene; nothing is emitted."""
+        row = self.row(key)
+        self._silent = True
+        self._go(row.target)
+        self._silent = False
+        self._show_form()
+
+    def row(self, key: str) -> TreeRow:
+        """Return the row of a layer of the scene; KeyError where there is none."""
+        if self._later.isActive():
+            self.show_site(*self._given)
+        for row in self.items.all():
+            if row.layer == key:
+                return row
+        raise KeyError(key)
+
+    def menu_for(self, key: str) -> QMenu:
+        """Return the menu of a layer of the scene."""
+        menu = QMenu(self)
+        menu.addAction(self.tr("Zoom to")).triggered.connect(lambda: self.zoom_requested.emit(key))
+        menu.addAction(self.tr("Only this")).triggered.connect(lambda: self.layers.only(key))
+        menu.addAction(self.tr("Show all")).triggered.connect(self._show_all)
+        return menu
+
+    def opacity_menu(self, key: str) -> QMenu:
+        """Return a slider for the opacity of a layer."""
+        menu, slider = QMenu(self), QSlider(Qt.Orientation.Horizontal)
+        slider.setRange(5, 100)
+        slider.setPageStep(10)
+        slider.setMinimumWidth(150)
+        slider.setAccessibleName(self.tr("Opacity"))
+        slider.setValue(round(100 * self.layers[key].opacity))
+        slider.valueChanged.connect(lambda value: self.layers.change(key, opacity=value / 100))
+        action = QWidgetAction(menu)
+        action.setDefaultWidget(slider)
+        menu.addAction(action)
+        return menu
+
+    # From the layers -----------------------------------------------------------------------------------------
+
+    def _listen(self, what: str, key: str) -> None:
+        """Follow what the scene shows: a change of a row at once, other rows once the event is over."""
+        if what != "changed":
+            self._later.start()
+            return
+        layer = self.layers[key]
+        for row in self.items.all():
+            if row.layer == key or row.target == ("horizon", layer.horizon):
+                renew_row(row, self.layers)
+                self.items.renew(row)
+        self._show_form()
+
+    def _show_form(self) -> None:
+        """Show how the layer of the chosen row is drawn; a patch has that of its surface."""
+        row = self.items.row_of(self.shown.mapToSource(self.view.currentIndex()))
+        key = "" if row is None else row.layer
+        if row is not None and row.target[0] == "patch":
+            key = f"surface:{row.target[1].partition(chr(10))[0]}"
+        self.form.show_layer(self.layers[key] if key in self.layers else None)  # noqa: SIM401 - no mapping
+
+    def _show_all(self) -> None:
+        for layer in self.layers:
+            self.layers.change(layer.key, visible=True)
+
+    def _ask_opacity(self, index: QModelIndex) -> None:
+        row = self.items.row_of(self.shown.mapToSource(index))
+        if row is not None and row.layer in self.layers:
+            box = self.view.visualRect(index)
+            self._pop_up(self.opacity_menu(row.layer), self.view.viewport().mapToGlobal(box.bottomLeft()))
+
+    def _pop_up(self, menu: QMenu, at: QPoint) -> None:
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        menu.popup(at)
+
+    # Rows ----------------------------------------------------------------------------------------------------
+
     def _horizon(
         self,
         name: str,
@@ -182,7 +291,8 @@ class ProjectTree(QWidget):
         if old:
             title = self.tr("{name} (stale)").format(name=name)
             words += "\n" + self.tr("Older than the settings: press Fit")
-        mark, aloud = icon("stale" if old else level_mark(judged.level)), f"{name}, {translated(judged.word)}"
+        mark = icon(f"horizon:{colour}+{'stale' if old else level_mark(judged.level)}")
+        aloud = f"{name}, {translated(judged.word)}"
         row = TreeRow(title, ("horizon", name), count, mark, words, aloud, italic=old)
         for patch in surface.patches:
             group = a.by_patch.get(patch.name)
@@ -199,7 +309,11 @@ class ProjectTree(QWidget):
         return TreeRow(body.name, ("body", body.name), body.count, icon(body.mark), body.words, checked=body.visible)
 
     def _checked(self, row: TreeRow, on: bool) -> None:
-        self.body_checked.emit(row.target[1], on)
+        if row.target[0] == "body":
+            self.body_checked.emit(row.target[1], on)
+            return
+        for key in tuple(layers_of_row(row, self.layers, opened=on)):
+            self.layers.change(key, visible=on)
 
     def _group(self, key: str, title: str, rows: list[TreeRow]) -> TreeRow:
         words = self.tr("{title} ({n})").format(title=title, n=len(rows))
@@ -210,21 +324,17 @@ class ProjectTree(QWidget):
         if text.strip():
             self.view.expandAll()
 
-    def _arrange(self, folded: set[object] | None) -> None:
-        header = self.view.header()
-        header.setStretchLastSection(False)
-        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
-        header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
-        for head in self.items.rows:
+    def _arrange(self, opened: dict[tuple[str, str], bool]) -> None:
+        self.view.lay_out()
+        for row in self.items.all():
             # A first look shows the horizons, and the rest only where it is short.
-            small = head.target[1] in ("horizons", "bodies") or len(head.rows) <= 6
-            opened = small if folded is None else head.target not in folded
-            self.view.setExpanded(self._index(head), opened)
+            small = row.head and (row.target[1] in ("horizons", "bodies") or len(row.rows) <= 6)
+            if row.rows:
+                self.view.setExpanded(self._index(row), opened.get(row.target, small))
 
-    def _folded(self) -> set[object] | None:
-        if not self.items.rows:
-            return None
-        return {head.target for head in self.items.rows if not self.view.isExpanded(self._index(head))}
+    def _opened(self) -> dict[tuple[str, str], bool]:
+        """Return which rows a person sees the rows below of."""
+        return {row.target: self.view.isExpanded(self._index(row)) for row in self.items.all() if row.rows}
 
     def _index(self, row: TreeRow) -> QModelIndex:
         return self.shown.mapFromSource(self.items.index_of(row))
@@ -238,7 +348,7 @@ class ProjectTree(QWidget):
 
     def _go(self, target: tuple[str, str] | None) -> None:
         for row in self.items.all():
-            if row.target == target and not row.head:
+            if row.target == target and (row.layer or not row.head):
                 self.view.setCurrentIndex(self._index(row))
                 self.view.scrollTo(self._index(row))
                 return
@@ -247,6 +357,11 @@ class ProjectTree(QWidget):
         target = self._target(self.view.indexAt(at))
         if target is not None:
             kind, name = target
+            row = self.items.row_of(self.shown.mapToSource(self.view.indexAt(at)))
+            if kind in ("layer", "group"):
+                if row is not None and row.layer in self.layers:
+                    self._pop_up(self.menu_for(row.layer), self.view.viewport().mapToGlobal(at))
+                return
             if kind == "patch":
                 kind, name = "horizon", name.split("\n", 1)[0]
             self.menu_requested.emit(kind, name, self.view.viewport().mapToGlobal(at))
@@ -255,6 +370,7 @@ class ProjectTree(QWidget):
         target = self._target(index)
         if self._silent or target is None:
             return
+        self._show_form()
         kind, name = target
         if kind == "horizon":
             self.horizon_chosen.emit(name)

@@ -17,6 +17,7 @@ from PySide6.QtWidgets import QColorDialog, QFileDialog, QInputDialog
 from geofit.bodies.settings import BodySettings
 from geofit.bodies.violations import Violation
 from geofit.data.messages import message
+from geofit.gui.panels.tree_model import SHOWN
 from geofit.project.body_record import BodyStyle, Intervals
 from geofit.project.journal import unfinished
 
@@ -52,7 +53,8 @@ def tree_item(app, name):
 def set_checked(app, name, on):
     items = app.panels.tree.items
     state = Qt.CheckState.Checked if on else Qt.CheckState.Unchecked
-    assert items.setData(items.index_of(tree_item(app, name)), state, Qt.ItemDataRole.CheckStateRole)
+    eye = items.index_of(tree_item(app, name)).siblingAtColumn(SHOWN)
+    assert items.setData(eye, state, Qt.ItemDataRole.CheckStateRole)
 
 
 def check(app, code):
@@ -197,15 +199,15 @@ def test_fit_rename_style_and_delete_are_undone_and_done_again(with_ore, monkeyp
     assert document.state.bodies == {}
 
 
-def test_tree_and_scene_list_change_the_same_style(with_ore):
+def test_eye_and_opacity_in_the_tree_change_the_style(with_ore):
     document, layers = with_ore.document, with_ore.panels.view.layers
     set_checked(with_ore, "ORE", False)
     with_ore.idle()
     assert not layers["body:ORE"].visible
     assert not document.state.bodies["ORE"].style.visible
-    with_ore.panels.scene.choose("body:ORE")
+    with_ore.panels.tree.choose_layer("body:ORE")
     for value in (80, 60, 40):
-        with_ore.panels.scene.form.opacity.setValue(value)
+        with_ore.panels.tree.form.opacity.setValue(value)
     layers.change("body:ORE", visible=True)
     with_ore.qtbot.waitUntil(lambda: document.state.bodies["ORE"].style.opacity == 0.4, timeout=5_000)
     with_ore.idle()

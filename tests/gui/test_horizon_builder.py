@@ -99,6 +99,52 @@ def test_a_site_without_tables_of_horizons_keeps_those_it_has(app, tmp_path, mon
     assert set(app.document.horizons) == {"water", "base of soil", "top of rock"}
 
 
+def test_the_new_horizon_stands_by_its_elevation_and_is_moved_up_and_down(opened, monkeypatch):
+    document = opened.document
+    before, code = document.state, codes_of(document.read)[0].code
+    levels = {name: points.xyz[:, 2].mean() for name, points in document.read.horizons.items()}
+    wanted = []
+
+    def act(dialog):
+        place = dialog.place
+        assert place.order == before.order
+        assert not place.up.isEnabled()
+        assert not place.down.isEnabled()
+        dialog.check(code)
+        name, level = dialog.name.text(), dialog.picks.points.xyz[:, 2].mean()
+        at = place.order.index(name)
+        assert all(levels[other] >= level for other in place.order[:at])
+        assert at == len(before.order) or levels[place.order[at + 1]] < level
+        assert place.list.item(at).font().bold()
+        while place.up.isEnabled():
+            place.up.click()
+        assert place.order == (name, *before.order)
+        place.down.click()
+        dialog.thinner.setValue(0.2)
+        dialog.name.setText("first")
+        dialog.name.textEdited.emit("first")
+        assert place.order == (before.order[0], "first", *before.order[1:])
+        dialog.add.click()
+        dialog.check(code)
+        dialog.limit.setCurrentIndex(1)
+        while place.down.isEnabled():
+            place.down.click()
+        wanted.append(place.order)
+        dialog.add.click()
+
+    drive(monkeypatch, act)
+    opened.trigger("build_horizon")
+    opened.idle()
+    assert document.horizons == wanted[0]
+    assert document.horizons[1] == "first"
+    rows = next(head.rows for head in opened.window.panels.tree.items.rows if head.target == ("group", "horizons"))
+    assert tuple(row.target[1] for row in rows) == wanted[0]
+    for _ in range(2):
+        opened.window.menus.undo.trigger()
+        opened.idle()
+    assert document.state == before
+
+
 @pytest.mark.skipif(not (DATA / "copper_creek").is_dir(), reason="the data of Copper Creek are not here")
 def test_copper_creek_groups_thousands_of_intervals(tmp_path):
     from geofit.project.importing import import_files

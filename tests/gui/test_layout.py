@@ -42,14 +42,14 @@ def test_the_start_page_stands_alone(app):
 def test_a_site_brings_every_dock_in_its_place(app):
     opened(app)
     assert shown(app.window) == {"tool bar", "panel bar", *app.window.panels.docks} - set(BOTTOM)
-    assert in_front(app.window) == {"tree", "scene", "fit"}
+    assert in_front(app.window) == {"tree", "fit"}
     assert app.window.menus.panels.isEnabled()
     assert all(dock.toggleViewAction().isEnabled() for dock in app.window.panels.docks.values())
 
 
 def test_the_next_site_finds_the_docks_as_they_were_left(app):
     opened(app)
-    app.window.panels.docks["scene"].close()
+    app.window.panels.docks["tree"].close()
     app.window.panels.reveal("plan")
     app.idle()
     left, front, width = shown(app.window), in_front(app.window), app.window.panels.docks["fit"].width()
@@ -57,7 +57,7 @@ def test_the_next_site_finds_the_docks_as_they_were_left(app):
     assert shown(app.window) == set()
     opened(app)
     assert shown(app.window) == left
-    assert in_front(app.window) == front == {"tree", "fit", "plan"}
+    assert in_front(app.window) == front == {"fit", "plan"}
     assert app.window.panels.docks["fit"].width() == width
 
 
@@ -82,7 +82,7 @@ def test_the_next_start_finds_them_too(app, qtbot, left_on):
 def test_a_layout_that_cannot_be_read_gives_the_first_one(app):
     app.window.panels.layout.state = QByteArray(b"\x00\xff")
     opened(app)
-    assert in_front(app.window) == {"tree", "scene", "fit"}
+    assert in_front(app.window) == {"tree", "fit"}
 
 
 def test_the_view_has_most_of_a_small_window(app):

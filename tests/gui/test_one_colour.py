@@ -11,7 +11,6 @@ from PySide6.QtGui import QColor, QPalette
 from geofit.gui import worker
 from geofit.gui.panels.plan import PlanPanel
 from geofit.gui.panels.project_tree import ProjectTree
-from geofit.gui.panels.scene_list import SceneList
 from geofit.gui.panels.section import SectionPanel
 from geofit.gui.view3d.view import SceneView
 from geofit.report.style import horizon_colours
@@ -42,9 +41,9 @@ def test_one_horizon_has_one_colour(qtbot, palette):
     site, surfaces = sample_site(), {name: fitted(name) for name in reversed(NAMES)}
     wanted = horizon_colours(site.horizons)
     assert len({wanted[name] for name in NAMES}) == len(NAMES)
-    view, section, plan, tree = SceneView(), SectionPanel(), PlanPanel(), ProjectTree()
-    scene = SceneList(view.layers)
-    for widget in (view, section, plan, tree, scene):
+    view, section, plan = SceneView(), SectionPanel(), PlanPanel()
+    tree = ProjectTree(view.layers)
+    for widget in (view, section, plan, tree):
         widget.setPalette(palette)
         qtbot.addWidget(widget)
     section.resize(800, 400)
@@ -63,12 +62,12 @@ def test_one_horizon_has_one_colour(qtbot, palette):
     for name in NAMES:
         (part, *_) = item_of(view, f"surface:{name}").parts
         assert QColor.fromRgbF(*part.actor.GetProperty().GetColor()).name() == wanted[name]
-        assert shades(scene.row(f"surface:{name}").icon(0)) == [wanted[name]]
+        assert shades(tree.row(f"points:{name}").mark) == [wanted[name]]
         assert drawn[name] == wanted[name]
         plan.show_surface(site, name, surfaces[name], surfaces[name].settings)
         assert plan.view.data.colour == wanted[name]
         (row,) = (row for row in tree.items.all() if row.text == name)
-        assert shades(row.rows[0].mark)[0] == wanted[name]
+        assert shades(row.rows[-1].mark)[0] == wanted[name]
     tree.show_site(site, {})
     (row,) = (row for row in tree.items.all() if row.text == FAULT)
     assert shades(row.mark)[0] == wanted[FAULT]

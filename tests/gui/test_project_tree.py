@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import pytest
 from panel_samples import FAULT, WITH_PERIPHERY, failing, fitted, sample_site
+from PySide6.QtCore import Qt
 
 from geofit.gui.panels.project_tree import ProjectTree
+from geofit.gui.view3d.layers import Layers
 
 
 @pytest.fixture
 def tree(qtbot):
-    tree = ProjectTree()
+    tree = ProjectTree(Layers())
     qtbot.addWidget(tree)
     tree.resize(260, 500)
     tree.show()
@@ -46,7 +48,7 @@ def test_points_are_counted_by_horizon_and_patch(tree):
     tree.show_site(sample_site(), {WITH_PERIPHERY: fitted()})
     horizon = heads(tree)["horizons"].rows[0]
     assert horizon.count == len(fitted().points)
-    assert tree.items.index_of(horizon).siblingAtColumn(1).data() == str(horizon.count)
+    assert f"Points: {horizon.count}" in tree.items.index_of(horizon).data(Qt.ItemDataRole.ToolTipRole)
     counts = {row.text: row.count for row in horizon.rows}
     names = fitted().accuracy.patch.tolist()
     assert counts == {patch.name: names.count(patch.name) for patch in fitted().patches}

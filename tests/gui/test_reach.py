@@ -67,10 +67,10 @@ def test_a_panel_is_come_back_to_where_it_was_left(shown):
 
 
 def test_a_closed_panel_is_passed_over(shown):
-    shown.window.panels.docks["scene"].close()
+    shown.window.panels.docks["fit"].close()
     shown.window.panels.tree.view.setFocus()
     shown.trigger("next_panel")
-    assert at(shown.window) == "fit"
+    assert at(shown.window) == "adjust"
 
 
 def test_the_menu_brings_to_the_front_what_stands_behind_and_closes_what_is_in_front(shown):
@@ -108,7 +108,7 @@ def test_tab_passes_over_what_stands_behind(shown, key):
             break
     else:
         pytest.fail(message("test.text", "Tab never came round"))
-    assert {"tree", "scene", "fit", "residuals", "view"} <= places
+    assert {"tree", "fit", "residuals", "view"} <= places
     assert not places & {"adjust", "section", "plan", "checks"}
 
 
