@@ -6,6 +6,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel
 
 from geofit.data.accuracy import Accuracy
+from geofit.gui.lengths import in_title, shown_length
 from geofit.report.digits import metres
 
 __all__ = ["Effect"]
@@ -50,16 +51,16 @@ class Effect(QFrame):
         worst = before.worst[0] if before.worst else None
         rows: list[tuple[str, str, str]] = [
             (self.tr("Effect"), self.tr("before"), self.tr("after")),
-            (self.tr("σ, m"), metres(before.sigma), metres(after.sigma)),
-            (self.tr("max |d|, m"), metres(before.max_abs), metres(after.max_abs)),
+            (self.tr("σ, m"), _figure(before.sigma), _figure(after.sigma)),
+            (self.tr("max |d|, m"), _figure(before.max_abs), _figure(after.max_abs)),
         ]
         if worst is not None and worst < len(after.residuals):
             d0, d1 = before.residuals[worst], after.residuals[worst]
-            rows.append((self.tr("worst point's d, m"), metres(d0), metres(d1)))
+            rows.append((self.tr("worst point's d, m"), _figure(d0), _figure(d1)))
         for k, row in enumerate(self.cells):
             for c, label in enumerate(row):
                 label.setVisible(k < len(rows))
-                label.setText(rows[k][c] if k < len(rows) else "")
+                label.setText(in_title(rows[k][c]) if k < len(rows) else "")
         font = self.font()
         font.setBold(True)
         for label in self.cells[0]:
@@ -67,3 +68,8 @@ class Effect(QFrame):
         verdict = self.tr("{before} → {after}").format(before=before.verdict, after=after.verdict)
         self.words.setText(verdict)
         self.words.setVisible(before.passed != after.passed)
+
+
+def _figure(length: float) -> str:
+    """Write metres in the unit that is shown."""
+    return metres(shown_length(float(length)))

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QLineEdit, QTreeVi
 from geofit.data.site import Site
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.gui.lengths import in_lengths
 from geofit.gui.panels.marks import icon, level_mark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import natural
@@ -177,7 +178,9 @@ class ProjectTree(QWidget):
         words = self.tr("{name}: {verdict}; patches: {patches}, points: {n}").format(
             name=name, verdict=translated(judged.word), patches=len(surface.patches), n=a.n
         )
-        words = "\n".join((words, *(f"{translated(lamp.title)}: {translated(lamp.text)}" for lamp in judged.lamps)))
+        words = "\n".join(
+            (words, *(f"{translated(lamp.title)}: {in_lengths(translated(lamp.text))}" for lamp in judged.lamps))
+        )
         title = name
         if old:
             title = self.tr("{name} (stale)").format(name=name)
@@ -190,6 +193,7 @@ class ProjectTree(QWidget):
             about = self.tr("Patch {name}: {rows} × {columns} control points, largest |d| {most} m").format(
                 name=translated(patch.name), rows=rows, columns=columns, most=metres(group.max_abs if group else 0.0)
             )
+            about = in_lengths(about)
             target = ("patch", f"{name}\n{patch.name}")
             points = group.n if group else 0
             row.rows.append(TreeRow(translated(patch.name), target, points, icon(f"patch:{colour}"), about))
