@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QLabel, QMainWindow, QProgressBar, QToolButton
 
 from geofit.gui.activity import Activity
 from geofit.gui.icons import palette_icon
+from geofit.gui.lengths import length_mark, shown_length
 from geofit.gui.panel_bar import PanelBar
 from geofit.gui.translate import translated
 
@@ -60,12 +61,13 @@ class ActivityBar:
         self._bar.addPermanentWidget(fold)
 
     def show_place(self, x: float, y: float, z: float) -> None:
-        """Show map coordinates, metres; nothing where they are nan."""
+        """Show map coordinates, given in metres; nothing where they are nan."""
         if math.isnan(x) or math.isnan(y):
             self.place.clear()
             return
+        x, y, z = (shown_length(value) for value in (x, y, z))
         height = "" if math.isnan(z) else f"   Z {z:.2f}"
-        self.place.setText(f"E {x:.2f}   N {y:.2f}{height} m")
+        self.place.setText(f"E {x:.2f}   N {y:.2f}{height} {length_mark()}")
 
     def _begin(self, title: str) -> None:
         self._title = title

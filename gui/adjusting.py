@@ -11,6 +11,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.preview import MovePreview, preview_move
 from geofit.gui.activity import Activity
 from geofit.gui.fitting import Fitting
+from geofit.gui.lengths import in_lengths
 from geofit.gui.panels.adjust import AdjustPanel
 from geofit.gui.translate import translated
 from geofit.gui.view3d.view import SceneView
@@ -99,7 +100,7 @@ class Adjusting(QObject):
             worst=metres(before.max_abs),
             new_worst=metres(after.max_abs),
         )
-        self._view.control_move.move(dz, figures if dz else "")
+        self._view.control_move.move(dz, in_lengths(figures) if dz else "")
 
     def _give_up(self) -> None:
         """Put the control point back where its move was refused, stopped or failed."""

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QInputDialog, QMenu, QMessageBox, QToolTip, QWidge
 from geofit.data.messages import Message
 from geofit.gui.actions import Actions
 from geofit.gui.fitting import Fitting
+from geofit.gui.lengths import in_lengths
 from geofit.gui.panels.curtain import site_extent
 from geofit.gui.selecting import Selecting
 from geofit.gui.translate import translated
@@ -49,7 +50,7 @@ class ContextMenus(QObject):
 
     def words(self, hit: Hit) -> str:
         """Return what is known of the thing under the pointer, a line each; empty where nothing is."""
-        return "\n".join(map(translated, self._lines(hit)))
+        return in_lengths("\n".join(map(translated, self._lines(hit))))
 
     def menu_at(self, hit: Hit | None) -> QMenu:
         """Return the menu of what lies under the pointer; of the scene itself where nothing does."""
@@ -83,7 +84,7 @@ class ContextMenus(QObject):
             self._fill(menu, name)
         elif kind == "hole":
             self._add(menu, self.tr("Go to"), lambda: self._panels.view.focus_hole(name))
-            words = "\n".join(map(translated, hole_lines(self._document.site, name)))
+            words = in_lengths("\n".join(map(translated, hole_lines(self._document.site, name))))
             self._add(menu, self.tr("Properties…"), partial(self._properties, words))
         elif kind == "section":
             self._add(menu, self.tr("Cut here"), lambda: self._panels.tree.section_chosen.emit(name))

@@ -8,12 +8,14 @@ import sys
 import traceback
 from pathlib import Path
 from types import TracebackType
+from typing import cast
 
 from PySide6.QtCore import QObject, QStandardPaths, Qt, QTimer
 
 from geofit.data.messages import message
 from geofit.gui.icons import application_icon
 from geofit.gui.language import apply_language
+from geofit.gui.lengths import LengthUnit, show_lengths_in
 from geofit.gui.main_window import MainWindow
 from geofit.gui.panels.log import qt_to_logging
 from geofit.gui.preferences import Preferences
@@ -31,7 +33,7 @@ _LOG = logging.getLogger(__name__)
 
 
 class Desktop(QObject):
-    """Holds what lives as long as the application; ``window`` is made anew for another language.
+    """Holds what lives as long as the application; ``window`` is made anew for another language or unit.
 
     Raises
     ------
@@ -51,6 +53,7 @@ class Desktop(QObject):
         apply_theme(app, self.preferences.theme)
         set_font(app)
         apply_language(self.preferences.language)
+        show_lengths_in(self.preferences.lengths)
         app.styleHints().colorSchemeChanged.connect(self._follow_system)
         self.journals = (
             Path(QStandardPaths.writableLocation(QStandardPaths.StandardLocation.StateLocation)) / "sessions"
@@ -99,6 +102,20 @@ class Desktop(QObject):
             return
         self.preferences.language = code
         apply_language(code)
+        self._renew()
+
+    def change_lengths(self, unit: str) -> None:
+        """Show lengths in another unit: every number of the window changes, so it is made anew."""
+        if unit == self.preferences.lengths:
+            return
+        if self.window.activity.busy:
+            self.window.tell(self.tr("Wait for the task to end, then choose the unit."))
+            return
+        self.preferences.lengths = cast("LengthUnit", unit)
+        show_lengths_in(self.preferences.lengths)
+        self._renew()
+
+    def _renew(self) -> None:
         old = self.window
         self.app.setQuitOnLastWindowClosed(False)
         old.leave_without_asking()
@@ -111,6 +128,7 @@ class Desktop(QObject):
         window = MainWindow(self.session, self.preferences)
         # Queued: the window that asks for another language is gone when its own event is over.
         window.language_chosen.connect(self.change_language, Qt.ConnectionType.QueuedConnection)
+        window.lengths_chosen.connect(self.change_lengths, Qt.ConnectionType.QueuedConnection)
         return window
 
     def _begin(self, file: Path | None) -> None:

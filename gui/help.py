@@ -74,8 +74,9 @@ class Help(QObject):
         set_language: Callable[[str], object],
         set_mouse: Callable[[Scheme], object],
         set_sizes: Callable[[float, float], object],
+        set_lengths: Callable[[str], object],
     ) -> None:
-        """Ask for theme, language, sizes and mouse."""
+        """Ask for theme, language, unit of lengths, sizes and mouse."""
         dialog = PreferencesDialog(preferences, self._window)
         if dialog.exec() == QDialog.DialogCode.Accepted:
             set_mouse(dialog.mouse)
@@ -84,6 +85,8 @@ class Help(QObject):
                 set_theme(dialog.theme)
             if dialog.language != preferences.language:
                 set_language(dialog.language)
+            if dialog.lengths != preferences.lengths:
+                set_lengths(dialog.lengths)
 
     def about(self) -> None:
         """Name the program, its version and its licence."""

@@ -23,6 +23,7 @@ from geofit.gui.files import Files
 from geofit.gui.fitting import Fitting
 from geofit.gui.help import Help
 from geofit.gui.icons import application_icon
+from geofit.gui.lengths import in_lengths
 from geofit.gui.living import Living
 from geofit.gui.menus import Menus
 from geofit.gui.morphing import Morphing
@@ -55,6 +56,7 @@ class MainWindow(QMainWindow):
     """The window on a session; it can be closed and made anew (another language) while the session goes on."""
 
     language_chosen = Signal(str)
+    lengths_chosen = Signal(str)
     closed = Signal()
 
     def __init__(self, session: Session, preferences: Preferences) -> None:
@@ -110,7 +112,7 @@ class MainWindow(QMainWindow):
 
     def tell(self, text: str) -> None:
         """Say something in the status bar for a while."""
-        self.statusBar().showMessage(text, 8000)
+        self.statusBar().showMessage(in_lengths(text), 8000)
 
     def leave_without_asking(self) -> None:
         """Close at the next chance: the session goes on, or the user has been asked."""
@@ -193,7 +195,12 @@ class MainWindow(QMainWindow):
             "steps": self._show_steps,
             "rename": self._rename,
             "preferences": lambda: self.help.preferences(
-                self.preferences, self._set_theme, self.language_chosen.emit, self._set_mouse, self._set_sizes
+                self.preferences,
+                self._set_theme,
+                self.language_chosen.emit,
+                self._set_mouse,
+                self._set_sizes,
+                self.lengths_chosen.emit,
             ),
             "home": view.reset_camera,
             "fold": self.panels.bar.toggle,

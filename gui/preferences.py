@@ -8,6 +8,7 @@ from typing import cast
 from PySide6.QtCore import QByteArray, QSettings
 
 from geofit.gui.language import LANGUAGES, system_language
+from geofit.gui.lengths import LENGTH_UNITS, LengthUnit
 from geofit.gui.theme import THEMES, Theme
 from geofit.gui.view3d.mouse import SCHEMES, Scheme
 
@@ -79,6 +80,16 @@ class Preferences:
     def _share(self, key: str, known: tuple[float, ...]) -> float:
         stored = str(self._store.value(key, 1.0))
         return next((share for share in known if str(share) == stored), 1.0)
+
+    @property
+    def lengths(self) -> LengthUnit:
+        """Unit in which lengths are shown."""
+        stored = str(self._store.value("lengths", "m"))
+        return next((unit for unit in LENGTH_UNITS if unit == stored), "m")
+
+    @lengths.setter
+    def lengths(self, unit: LengthUnit) -> None:
+        self._store.setValue("lengths", unit)
 
     @property
     def recent(self) -> tuple[Path, ...]:

@@ -1,4 +1,4 @@
-"""Theme, language, size of text and points, and what the mouse does in the 3D view."""
+"""Theme, language, unit of lengths, size of text and points, and what the mouse does in the 3D view."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import cast
 from PySide6.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLabel, QWidget
 
 from geofit.gui.language import LANGUAGES
+from geofit.gui.lengths import LengthUnit
 from geofit.gui.preferences import POINT_SIZES, TEXT_SIZES, Preferences
 from geofit.gui.theme import missing_chinese
 from geofit.gui.view3d.mouse import Scheme
@@ -15,7 +16,7 @@ __all__ = ["PreferencesDialog"]
 
 
 class PreferencesDialog(QDialog):
-    """Asks for theme, language, sizes and mouse; the properties hold what was chosen."""
+    """Asks for theme, language, unit, sizes and mouse; the properties hold what was chosen."""
 
     def __init__(self, preferences: Preferences, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -49,12 +50,27 @@ class PreferencesDialog(QDialog):
             for share in known:
                 box.addItem(self.tr("{percent} %").format(percent=f"{100 * share:.0f}"), share)
             box.setCurrentIndex(box.findData(now))
+        self.lengths_box = QComboBox()
+        for unit, text in (
+            ("m", self.tr("metres")),
+            ("ft", self.tr("feet (0.3048 m)")),
+            ("ft-us", self.tr("US survey feet (1200/3937 m)")),
+        ):
+            self.lengths_box.addItem(text, unit)
+        self.lengths_box.setCurrentIndex(self.lengths_box.findData(preferences.lengths))
+        self.lengths_box.setToolTip(
+            self.tr(
+                "Unit of lengths in tables, axes, verdicts and figures of the windows. What is entered, files and "
+                "reports stay in metres."
+            )
+        )
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
         form = QFormLayout(self)
         form.addRow(self.tr("&Theme"), self._theme)
         form.addRow(self.tr("&Language"), self._language)
+        form.addRow(self.tr("L&engths in"), self.lengths_box)
         form.addRow(self.tr("Te&xt size"), self._text)
         form.addRow(self.tr("&Points in 3D"), self._points)
         form.addRow(self.tr("&Mouse in 3D"), self.mouse_box)
@@ -85,6 +101,11 @@ class PreferencesDialog(QDialog):
     def mouse(self) -> Scheme:
         """The chosen scheme of the mouse."""
         return cast("Scheme", self.mouse_box.currentData())
+
+    @property
+    def lengths(self) -> LengthUnit:
+        """The chosen unit of lengths."""
+        return cast("LengthUnit", self.lengths_box.currentData())
 
     @property
     def text_size(self) -> float:

@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSplitter, QVBox
 
 from geofit.bodies.simulate import BodyVolumes
 from geofit.bodies.violations import Violation, question_rows
+from geofit.gui.lengths import in_lengths
 from geofit.gui.panels.marks import icon
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import DataTable, TableColumn
@@ -115,11 +116,12 @@ class BodyFigures(QWidget):
             self.count.setText(self.tr("Nothing was fitted: there are no data to check against."))
         elif not broken:
             text = self.tr("No violations: {n} contacts within ε, {metres:.1f} m logged on the correct side.")
-            self.count.setText(text.format(n=a.n, metres=a.logged_length))
+            self.count.setText(in_lengths(text.format(n=a.n, metres=a.logged_length)))
         else:
             text = self.tr("Violations: {n}; samples on the wrong side: {wrong}; {metres:.2f} m of {logged:.1f} m")
             wrong = a.missed_length + a.excess_length
-            self.count.setText(text.format(n=len(broken), wrong=a.wrong_side, metres=wrong, logged=a.logged_length))
+            text = text.format(n=len(broken), wrong=a.wrong_side, metres=wrong, logged=a.logged_length)
+            self.count.setText(in_lengths(text))
         if asked:
             text = self.tr("Questions between sections: {n}.").format(n=len(asked))
             self.count.setText(f"{self.count.text()} {text}")

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QLabel, QSplitter, QVBoxLayout, QWidget
 
 from geofit.data.languages import Language
 from geofit.data.messages import Message
+from geofit.gui.lengths import in_lengths
 from geofit.gui.panels.canvas import PlotCanvas, PlotColours, place_axes, recolour
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import DataTable, TableColumn
@@ -118,9 +119,9 @@ class ChangesPanel(QWidget):
                 said = words + "\n" + self.tr("The states are being compared.")
                 self._say(self._with_lost(said, lost), self.tr("Compare"), lambda: self.compare_requested.emit(name))
             return
-        self.figures.setText(translated(comparison.change.text))
+        self.figures.setText(in_lengths(translated(comparison.change.text)))
         verdict = translated(comparison.test.text)
-        self.verdict.setText(verdict)
+        self.verdict.setText(in_lengths(verdict))
         font = self.verdict.font()
         font.setBold(True)
         self.verdict.setFont(font)

@@ -22,6 +22,7 @@ from geofit.data.accuracy import Accuracy, Check, ReadBack
 from geofit.data.messages import Message, gravest_first
 from geofit.data.prediction import PredictionResult
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.gui.lengths import in_lengths
 from geofit.gui.panels.marks import icon, verdict_mark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.translate import translated
@@ -150,6 +151,7 @@ class ChecksPanel(QWidget):
         result = word or (
             self.tr("not applicable") if passed is None else self.tr("passed") if passed else self.tr("failed")
         )
+        value, limit, words = map(in_lengths, (value, limit, words))
         item = QTreeWidgetItem([name, result, value, limit, words])
         item.setIcon(0, verdict_mark(passed))
         for column in (2, 3):

@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
 from geofit.data.errors import GeofitError
 from geofit.fitting.edit import acted_on, support
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.gui.lengths import in_lengths
 from geofit.gui.panels.weight import WeightBox
 from geofit.gui.translate import translated
 from geofit.splines.patch import Patch
@@ -180,7 +181,7 @@ class ControlPointPage(QWidget):
             words += "\n" + reach
         except GeofitError as error:
             words, self.held = translated(str(error)), True
-        self.about.setText(words)
+        self.about.setText(in_lengths(words))
         weights = self._patch().weights
         weight = 1.0 if weights is None else float(weights[self.i.value(), self.j.value()])
         self.weight.show_weight(weight, held=self.held)

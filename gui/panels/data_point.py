@@ -6,6 +6,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSpinBox, QVBoxLayout, QWidget
 
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.gui.lengths import in_lengths
 from geofit.gui.translate import translated
 from geofit.project.provenance import Row
 
@@ -76,4 +77,4 @@ class DataPointPage(QWidget):
         )
         if len(surface.core) == len(surface.points) and surface.core[index]:
             words += "\n" + self.tr("The surface meets this point already.")
-        self.about.setText(words)
+        self.about.setText(in_lengths(words))

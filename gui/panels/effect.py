@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QLabel
 
 from geofit.data.accuracy import Accuracy
 from geofit.fitting.preview import MoveEffect
+from geofit.gui.lengths import in_title, shown_length
 from geofit.report.digits import metres
 
 __all__ = ["Effect"]
@@ -63,18 +64,23 @@ class Effect(QFrame):
         worst = before.worst[0] if before.worst else None
         rows: list[tuple[str, str, str]] = [
             (self.tr("Effect"), self.tr("before"), self.tr("after")),
-            (self.tr("σ, m"), metres(before.sigma), metres(after.sigma)),
-            (self.tr("max |d|, m"), metres(before.max_abs), metres(after.max_abs)),
+            (self.tr("σ, m"), _figure(before.sigma), _figure(after.sigma)),
+            (self.tr("max |d|, m"), _figure(before.max_abs), _figure(after.max_abs)),
         ]
         if worst is not None and worst < len(after.residuals):
             d0, d1 = before.residuals[worst], after.residuals[worst]
-            rows.append((self.tr("worst point's d, m"), metres(d0), metres(d1)))
+            rows.append((self.tr("worst point's d, m"), _figure(d0), _figure(d1)))
         rows += more
         for k, row in enumerate(self.cells):
             for c, label in enumerate(row):
                 label.setVisible(k < len(rows))
-                label.setText(rows[k][c] if k < len(rows) else "")
+                label.setText(in_title(rows[k][c]) if k < len(rows) else "")
         font = self.font()
         font.setBold(True)
         for label in self.cells[0]:
             label.setFont(font)
+
+
+def _figure(length: float) -> str:
+    """Write metres in the unit that is shown."""
+    return metres(shown_length(float(length)))

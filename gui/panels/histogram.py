@@ -12,6 +12,7 @@ from geofit.data.languages import Language
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.canvas import PlotCanvas, PlotColours, place_axes, recolour, wrapped
+from geofit.gui.panels.length_axes import number_lengths
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.translate import user_language
 from geofit.report.histogram import histogram, normal_plot
@@ -68,6 +69,7 @@ class HistogramPanel(QWidget):
         self._texts = []
         for axes in (left, right):
             recolour(axes, colours)
+            number_lengths(axes)
             self._texts.append((axes.get_title("left"), axes.get_xlabel(), axes.get_ylim()))
 
     def _arrange(self, colours: PlotColours) -> None:

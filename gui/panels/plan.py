@@ -13,6 +13,7 @@ from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.parametrize import Parametrization
 from geofit.geometry.frame import Frame, map_frame
+from geofit.gui.lengths import in_lengths
 from geofit.gui.panels.area_overlay import AreaOverlay
 from geofit.gui.panels.core_box import CoreBox, core_count, parametrization_of
 from geofit.gui.panels.flow import FlowLayout
@@ -237,4 +238,4 @@ class PlanPanel(QWidget):
         )
         if widened:
             words += " " + self.tr("The fit widens it to the edge of the area, where next to nothing lies between.")
-        self.reason.setText(words + " " + self.tr("Press Use to take it."))
+        self.reason.setText(in_lengths(words) + " " + self.tr("Press Use to take it."))

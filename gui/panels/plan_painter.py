@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QImage, QPainter, QPainterPath, QPen, QPolygonF
 
+from geofit.gui.lengths import length_mark, metres_shown, shown_length
+
 __all__ = ["draw_cloud", "draw_labels", "draw_north", "draw_scale_bar", "draw_title", "round_length"]
 
 #: Left, top, width and height, logical pixels.
@@ -162,16 +164,16 @@ def draw_title(painter: QPainter, name: str, colour: QColor, paper: QColor) -> N
 
 def draw_scale_bar(painter: QPainter, within: QRect, scale: float) -> None:
     """Draw a bar of a round length at the lower left, above the legend."""
-    length = round_length(LONGEST / scale)
+    length = round_length(shown_length(LONGEST / scale))
     left, bottom = 12.0, within.height() - 29.0
-    right = left + length * scale
+    right = left + length * metres_shown() * scale
     pen = QPen(painter.pen().color(), 2)
     pen.setCapStyle(Qt.PenCapStyle.FlatCap)
     painter.setPen(pen)
     painter.drawPolyline(
         [QPointF(left, bottom - 5), QPointF(left, bottom), QPointF(right, bottom), QPointF(right, bottom - 5)]
     )
-    painter.drawText(QPointF(right + 6, bottom + 1), f"{length:g} m")
+    painter.drawText(QPointF(right + 6, bottom + 1), f"{length:g} {length_mark()}")
 
 
 def draw_north(painter: QPainter, within: QRect) -> None:

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QFrame, QLabel, QPushButton, QScrollArea, QVBoxLay
 
 from geofit.data.points import PointSet
 from geofit.data.prediction import LeftOut, PredictionResult
+from geofit.gui.lengths import in_lengths
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.translate import translated
@@ -149,7 +150,7 @@ class PredictionPanel(QWidget):
             lines.append(
                 words.format(name=self._scheme(left.scheme), inside=100 * left.inside, raw=100 * left.inside_raw)
             )
-        self.figures.setText("\n".join(lines) or self.tr("No figure could be found; the notes say why."))
+        self.figures.setText(in_lengths("\n".join(lines)) or self.tr("No figure could be found; the notes say why."))
 
     def _scheme(self, scheme: str) -> str:
         words = {

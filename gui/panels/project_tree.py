@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
 from geofit.data.site import Site
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.gui.lengths import in_lengths
 from geofit.gui.panels.layer_form import LayerForm
 from geofit.gui.panels.layer_rows import hang, layers_of_row, renew_row
 from geofit.gui.panels.marks import icon, level_mark
@@ -286,7 +287,9 @@ class ProjectTree(QWidget):
         words = self.tr("{name}: {verdict}; patches: {patches}, points: {n}").format(
             name=name, verdict=translated(judged.word), patches=len(surface.patches), n=a.n
         )
-        words = "\n".join((words, *(f"{translated(lamp.title)}: {translated(lamp.text)}" for lamp in judged.lamps)))
+        words = "\n".join(
+            (words, *(f"{translated(lamp.title)}: {in_lengths(translated(lamp.text))}" for lamp in judged.lamps))
+        )
         title = name
         if old:
             title = self.tr("{name} (stale)").format(name=name)
@@ -300,6 +303,7 @@ class ProjectTree(QWidget):
             about = self.tr("Patch {name}: {rows} × {columns} control points, largest |d| {most} m").format(
                 name=translated(patch.name), rows=rows, columns=columns, most=metres(group.max_abs if group else 0.0)
             )
+            about = in_lengths(about)
             target = ("patch", f"{name}\n{patch.name}")
             points = group.n if group else 0
             row.rows.append(TreeRow(translated(patch.name), target, points, icon(f"patch:{colour}"), about))

@@ -16,9 +16,11 @@ from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QLabel, QV
 from geofit.data.prediction import Uncertainty
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.gui.lengths import length_mark, shown_length
 from geofit.gui.panels.canvas import PlotCanvas, PlotColours, place_axes
 from geofit.gui.panels.curtain import Curtain, Meshes, Traces, site_extent, trace
 from geofit.gui.panels.flow import FlowLayout
+from geofit.gui.panels.length_axes import number_lengths
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.section_bodies import SectionBody, draw_bodies
 from geofit.gui.panels.section_painter import (
@@ -276,11 +278,9 @@ class SectionPanel(QWidget):
     def _say_line(self) -> None:
         assert self.data is not None
         (x0, y0), (x1, y1) = self.data.curtain.line[[0, -1]]
-        self.state.setText(
-            self.tr("From ({x0:.1f}, {y0:.1f}) to ({x1:.1f}, {y1:.1f}), {length:.0f} m").format(
-                x0=x0, y0=y0, x1=x1, y1=y1, length=self.data.curtain.length
-            )
-        )
+        text = self.tr("From ({x0:.1f}, {y0:.1f}) to ({x1:.1f}, {y1:.1f}), {length:.0f} m")
+        x0, y0, x1, y1, length = (shown_length(float(value)) for value in (x0, y0, x1, y1, self.data.curtain.length))
+        self.state.setText(text.format(x0=x0, y0=y0, x1=x1, y1=y1, length=length).removesuffix("m") + length_mark())
 
     def _paint(self, colours: PlotColours) -> None:
         if self.data is None:
@@ -321,6 +321,7 @@ class SectionPanel(QWidget):
         if low:
             axes.set_xlabel(self.tr("Distance, m"), ha="left")
             axes.xaxis.set_label_coords(1 + 14 / size[0], -8 / size[1])
+        number_lengths(axes)
         return size
 
     def _look(self, axes: Axes, beside: tuple[float, float], levels: tuple[float, float]) -> None:

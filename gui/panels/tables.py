@@ -10,7 +10,7 @@ import csv
 import io
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from os import PathLike
 from typing import Any
@@ -31,6 +31,7 @@ from PySide6.QtGui import QAction, QIcon, QKeySequence, QPalette, QResizeEvent
 from PySide6.QtWidgets import QAbstractItemView, QApplication, QFileDialog, QHeaderView, QMenu, QTableView, QWidget
 
 from geofit.data.files import replacing, spreadsheet_cell
+from geofit.gui.lengths import in_title, shown_length
 from geofit.gui.preferences import Preferences
 from geofit.gui.translate import translated
 
@@ -84,6 +85,13 @@ class TableColumn:
             return str(value)
         # Adding 0 turns -0.000 into 0.000.
         return "" if np.isnan(value) else f"{round(float(value), self.digits) + 0.0:.{self.digits}f}"
+
+    def shown(self) -> TableColumn:
+        """Return the column as it is shown: one of lengths, whose title ends in ", m", in the chosen unit."""
+        title = in_title(self.title)
+        if title == self.title or not self.number:
+            return self
+        return replace(self, title=title, values=shown_length(np.asarray(self.values, float)))
 
     @property
     def number(self) -> bool:
@@ -252,7 +260,7 @@ class DataTable(QTableView):
     def show_columns(self, columns: Sequence[TableColumn], struck: NDArray[np.bool_] | None = None) -> None:
         """Take other data, keep the sorting, and fit the columns to their cells the first time."""
         self._silent = True
-        self.rows.set_columns(columns, struck)
+        self.rows.set_columns([column.shown() for column in columns], struck)
         self._silent = False
         if columns and not self._sized:
             self.resizeColumnsToContents()

@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QSizePolicy, QWidget
 
 from geofit.data.accuracy import Accuracy
 from geofit.data.verdict import Lamp, Level, Verdict, verdict_of
+from geofit.gui.lengths import in_lengths
 from geofit.gui.panels.marks import level_mark, paint, readable
 from geofit.gui.theme import is_dark
 from geofit.gui.translate import translated
@@ -103,7 +104,7 @@ class VerdictBadge(QFrame):
                 for over in accuracy.over.values()
             )
             most = self.tr("max |d| {most} m of {n} points").format(most=metres(accuracy.max_abs), n=count(accuracy.n))
-            self._more.setText(f"{most}\n{beyond}")
+            self._more.setText(in_lengths(f"{most}\n{beyond}"))
             self.setToolTip(
                 self.tr(
                     "σ = √(Σ d² / (n − 1)) over all {n} original points, d the orthogonal distance to the surface. "
@@ -123,7 +124,7 @@ class VerdictBadge(QFrame):
             mark.setVisible(shown)
             label.setVisible(shown)
             mark.name = level_mark(lamps[k].level) if shown else "none"
-            label.setText(translated(lamps[k].text) if shown else "")
+            label.setText(in_lengths(translated(lamps[k].text)) if shown else "")
             label.setToolTip(translated(lamps[k].title) if shown else "")
             mark.update()
 

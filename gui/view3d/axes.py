@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.gui.lengths import length_mark, metres_shown, shown_length
 from geofit.gui.view3d.projector import Projector
 
 __all__ = ["Mark", "floor_lines", "grouped", "marks", "nice", "ticks"]
@@ -43,10 +44,18 @@ def grouped(value: float) -> str:
 
 
 def ticks(low: float, high: float, step: float) -> Floats:
-    """Return the multiples of a step inside a range, or of a greater one where there are too many."""
+    """Return the multiples of a step inside a range, or of a greater one where there are too many; metres.
+
+    They are round in the unit that is shown.
+    """
+    per = metres_shown()
+    low, high = low / per, high / per
+    step = step if per == 1.0 else nice(step / per)
     while (high - low) / step > MOST:
         step *= 2 if f"{step:e}"[0] != "2" else 2.5
-    return np.round(np.arange(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1) * step, 6)
+    return np.asarray(
+        np.round(np.arange(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1) * step, 6) * per
+    )
 
 
 def floor_lines(box: Floats, step: float) -> tuple[Floats, list[NDArray[np.int64]]]:
@@ -107,6 +116,8 @@ def _along(
     for value, (x, y) in zip(values.tolist(), seen.tolist(), strict=True):
         inside = 0 <= x <= view.width and 0 <= y <= view.height
         if inside and (not kept or math.hypot(x - kept[-1].x, y - kept[-1].y) >= gap):
-            unit = " m" if axis == 2 else ""
-            kept.append(Mark(x, y, (float(out[0]), float(out[1])), f"{letter}{grouped(value)}{unit}"))
+            unit = f" {length_mark()}" if axis == 2 else ""
+            kept.append(
+                Mark(x, y, (float(out[0]), float(out[1])), f"{letter}{grouped(round(shown_length(value), 6))}{unit}")
+            )
     return kept

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import colorsys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from geofit.checks.check import ANGLE_LIMIT, GAP_LIMIT
 from geofit.data.accuracy import Seam
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
+from geofit.gui.lengths import in_lengths, length_mark, shown_length
 from geofit.gui.view3d.layers import Legend, Swatch
 from geofit.report.style import FAIL, PASS, bands, kind_style, rgb
 
@@ -94,7 +95,9 @@ def ramp(by: str, values: Floats) -> Ramp:
     stops = np.array([rgb(c) for c in RAMPS[by]], float)
     share = np.linspace(0, len(stops) - 1, STEPS)
     table = np.stack([np.interp(share, np.arange(len(stops)), stops[:, k]) for k in range(3)], axis=1)
-    return Ramp(np.round(table).astype(np.uint8), low, high, Legend(by, UNITS[by], (), RAMPS[by], low, high))
+    return Ramp(
+        np.round(table).astype(np.uint8), low, high, length_legend(Legend(by, UNITS[by], (), RAMPS[by], low, high))
+    )
 
 
 def plain_points(count: int, colour: str) -> PointColours:
@@ -124,6 +127,13 @@ def points_by(
     return plain_points(len(points), colour)
 
 
+def length_legend(legend: Legend) -> Legend:
+    """Return a legend of metres in the unit that is shown."""
+    if legend.unit != "m":
+        return legend
+    return replace(legend, unit=length_mark(), low=shown_length(legend.low), high=shown_length(legend.high))
+
+
 def _by_bands(d: Floats, settings: FitSettings, dark: bool) -> PointColours:
     code = np.zeros(len(d), np.uint8)
     shades: list[tuple[int, int, int]] = []
@@ -135,13 +145,13 @@ def _by_bands(d: Floats, settings: FitSettings, dark: bool) -> PointColours:
             code[mask] = len(shades)
             shades.append(rgb(shade))
             sizes.append(SIZE * (0.75 + 0.4 * k))
-        label = band.label.removeprefix("|d| ").removesuffix(" m")
+        label = in_lengths(band.label).removeprefix("|d| ").removesuffix(f" {length_mark()}")
         if k == 0:
             middle = Swatch(band.above, f"± {label.removeprefix('< ')}")
         else:
             above.insert(0, Swatch(band.above, f"+ {label}"))
             below.append(Swatch(band.below, f"− {label}"))
-    legend = Legend("deviation", "m", (*above, middle, *below))
+    legend = Legend("deviation", length_mark(), (*above, middle, *below))
     return PointColours(code, np.array(shades, np.uint8), np.array(sizes), legend)
 
 

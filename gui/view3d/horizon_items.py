@@ -19,6 +19,7 @@ from geofit.data.points import PointSet
 from geofit.data.prediction import Suggestion
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.gui.lengths import in_lengths
 from geofit.gui.view3d.actors import ActorPart, coloured, dots, lines, poly, ramped, shaded, triangles
 from geofit.gui.view3d.cloud import PointCloud
 from geofit.gui.view3d.colouring import SIZE, points_by, ramp, seam_colours
@@ -206,5 +207,5 @@ def suggestions_item(suggestions: Sequence[Suggestion], top: float, layer: Layer
         ActorPart(lines(poly(xyz - look.origin, runs=list(np.arange(len(xyz)).reshape(-1, 2))), colour), width=2.5),
         ActorPart(dots(poly(feet - look.origin), colour, balls=True), size=10.0),
     ]
-    names = [f"{k} · ± {s.sd:.2f} m" for k, s in enumerate(suggestions, 1)] if layer.labels else []
+    names = [in_lengths(f"{k} · ± {s.sd:.2f} m") for k, s in enumerate(suggestions, 1)] if layer.labels else []
     return Item(parts, corners_of(np.concatenate([feet, heads])), places=heads, names=tuple(names))

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPen, QPolygonF
 
+from geofit.gui.lengths import length_mark, metres_shown, shown_length
 from geofit.gui.view3d.axes import Mark, grouped, nice
 from geofit.gui.view3d.layer_names import word
 from geofit.gui.view3d.layers import Legend
@@ -299,11 +300,12 @@ def _note(painter: QPainter, view: Projector, content: Content, theme: Theme) ->
     painter.setPen(theme.text)
     painter.drawText(box, Qt.AlignmentFlag.AlignCenter, content.note)
     if content.metres is not None:
-        length = nice(BAR * content.metres)
-        x, y, pixels = box.right() + 16, box.center().y() + 4, length / content.metres
+        length = nice(shown_length(BAR * content.metres))
+        x, y = box.right() + 16, box.center().y() + 4
+        pixels = length * metres_shown() / content.metres
         painter.setPen(QPen(theme.text, 2))
         painter.drawPolyline([QPointF(x, y - 6), QPointF(x, y), QPointF(x + pixels, y), QPointF(x + pixels, y - 6)])
-        text = f"{grouped(length)} m"
+        text = f"{grouped(length)} {length_mark()}"
         painter.drawText(
             QRectF(x, y - 8 - metrics.height(), pixels, metrics.height()), Qt.AlignmentFlag.AlignCenter, text
         )

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, QPointF, QTimer, Signal
 
+from geofit.gui.lengths import in_lengths
 from geofit.gui.translate import translated
 from geofit.gui.view3d.canvas import Canvas
 from geofit.gui.view3d.contents import Contents
@@ -126,7 +127,7 @@ class Pointer(QObject):
         text = f"{word(str(points.kind[index]))} {where}".strip() + f" · {points.xyz[index, 2]:.2f} m"
         if residuals is not None and np.isfinite(residuals[index]):
             text += f" · d {residuals[index]:+.3f} m".replace("-", "−")
-        return Ring(points.xyz[index], text)
+        return Ring(points.xyz[index], in_lengths(text))
 
     def _about_control(self, horizon: str, name: str, i: int, j: int) -> Ring | None:
         surface = self._contents.surfaces.get(horizon)
@@ -135,7 +136,7 @@ class Pointer(QObject):
         if surface is None or patch is None or i >= patch.control.shape[0] or j >= patch.control.shape[1]:
             return None
         place = patch.control[i, j] + surface.origin
-        return Ring(place, f"{translated(name)} [{i}, {j}] · {place[2]:.2f} m", solid=True)
+        return Ring(place, in_lengths(f"{translated(name)} [{i}, {j}] · {place[2]:.2f} m"), solid=True)
 
     def set_measuring(self, on: bool) -> None:
         """Let clicks measure, or pick again."""
@@ -145,8 +146,10 @@ class Pointer(QObject):
 
     def measure_text(self) -> str:
         """Return the measure in words; empty before its second place."""
-        return self.measure.text(
-            self.tr("{distance} m\nhorizontal {flat} m · Δz {rise} m\nazimuth {azimuth}° · dip {dip}°")
+        return in_lengths(
+            self.measure.text(
+                self.tr("{distance} m\nhorizontal {flat} m · Δz {rise} m\nazimuth {azimuth}° · dip {dip}°")
+            )
         )
 
     def clear(self) -> None:
