@@ -6,7 +6,7 @@ from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from PySide6.QtCore import QModelIndex, QPoint, QSize, QSortFilterProxyModel, Qt, QTimer, Signal
+from PySide6.QtCore import QItemSelectionModel, QModelIndex, QPoint, QSize, QSortFilterProxyModel, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QLineEdit,
@@ -93,7 +93,10 @@ class ProjectTree(QWidget):
         self.view.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.view.setTextElideMode(Qt.TextElideMode.ElideRight)
         self.search.textChanged.connect(self._filter)
-        self.view.selectionModel().currentChanged.connect(self._tell)
+        # As in :class:`~geofit.gui.panels.tables.DataTable`.
+        self._selection = QItemSelectionModel(self.shown, self.view)
+        self.view.setSelectionModel(self._selection)
+        self._selection.currentChanged.connect(self._tell)
         self.view.activated.connect(self._tell)
         self.view.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
         self.view.customContextMenuRequested.connect(self._ask_menu)

@@ -228,6 +228,9 @@ class DataTable(QTableView):
         super().__init__(parent)
         self.rows = ArrayModel(self)
         self.setModel(self.rows)
+        # Made here: PySide, asked for the one that Qt makes, once returned an object without its signals.
+        self._selection = QItemSelectionModel(self.rows, self)
+        self.setSelectionModel(self._selection)
         self.setSortingEnabled(True)
         self.horizontalHeader().setSortIndicator(-1, Qt.SortOrder.AscendingOrder)
         self.horizontalHeader().setSortIndicatorClearable(True)
@@ -255,7 +258,7 @@ class DataTable(QTableView):
         self.addAction(self.copy_action)
         self._silent = False
         self._sized = self._spaced = False
-        self.selectionModel().currentRowChanged.connect(self._tell)
+        self._selection.currentRowChanged.connect(self._tell)
 
     def show_columns(self, columns: Sequence[TableColumn], struck: NDArray[np.bool_] | None = None) -> None:
         """Take other data, keep the sorting, and fit the columns to their cells the first time."""
@@ -292,7 +295,7 @@ class DataTable(QTableView):
     @property
     def selected(self) -> list[int]:
         """The data's indices of all selected rows, as they are sorted."""
-        return [self.rows.source(row) for row in sorted(i.row() for i in self.selectionModel().selectedRows())]
+        return [self.rows.source(row) for row in sorted(i.row() for i in self._selection.selectedRows())]
 
     @property
     def current(self) -> int | None:
@@ -324,7 +327,7 @@ class DataTable(QTableView):
         for row in rows:
             chosen.select(self.rows.index(row, 0), self.rows.index(row, self.rows.columnCount() - 1))
         self.setCurrentIndex(self.rows.index(rows[0], 0))
-        self.selectionModel().select(chosen, QItemSelectionModel.SelectionFlag.ClearAndSelect)
+        self._selection.select(chosen, QItemSelectionModel.SelectionFlag.ClearAndSelect)
         self._silent = False
 
     def menu(self) -> QMenu:
@@ -336,7 +339,7 @@ class DataTable(QTableView):
 
     def copy(self) -> None:
         """Put the selected rows on the clipboard as tab-separated text; all of them if none is selected."""
-        rows = sorted(index.row() for index in self.selectionModel().selectedRows())
+        rows = sorted(index.row() for index in self._selection.selectedRows())
         QApplication.clipboard().setText(self._written(rows or range(self.rows.rowCount()), "\t"))
 
     def export(self, path: str | PathLike[str]) -> None:
