@@ -86,8 +86,10 @@ def quad_meshes(field: Field, component: TriangleMesh, others: TriangleMesh, mos
             if layout is None:
                 continue
             if len(layout.quads) > most:
+                # Finer rasters have more.
                 break
-            found.append(layout)
+            if _same_topology(layout.triangles, component):
+                found.append(layout)
     yield from sorted(found, key=lambda layout: len(layout.quads))
 
 
@@ -104,8 +106,7 @@ def _layout(
     found = dual_quads(value.reshape(counts))
     if found is None:
         return None
-    layout = QuadMesh((origin + size * found[0]) @ axes, found[1], float(size.max()))
-    return layout if _same_topology(layout.triangles, component) else None
+    return QuadMesh((origin + size * found[0]) @ axes, found[1], float(size.max()))
 
 
 def _mask_others(value: Floats, nodes: Floats, component: TriangleMesh, others: TriangleMesh) -> None:
