@@ -165,7 +165,7 @@ def require_closed(mesh: TriangleMesh, name: str) -> None:
             message(
                 "morphing.mesh-inconsistent",
                 "The mesh '{name}' is inconsistent: at {count} edges more than two triangles meet, or two of opposite "
-                "orientation, such as {edges}. Separation it in the program that made it.",
+                "orientation, such as {edges}. Repair it in the program that made it.",
                 name=name,
                 count=len(wrong),
                 edges=_named(mesh, wrong),

@@ -197,7 +197,8 @@ def _lattice(ends: Sequence[End], spacing: float | None, cells: int) -> Lattice:
             message(
                 "morphing.bodies-far-apart",
                 "The bodies span {size:.6g} m together, but are at most {own:.4g} m long: they lie far from each "
-                "other. Check their coordinates, such as an origin that only one of the files states.",
+                "other. Check their coordinates: an origin that only one of the files states, or millimetres in one of "
+                "them.",
                 size=size,
                 own=own,
             )

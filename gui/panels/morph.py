@@ -147,7 +147,12 @@ class MorphPanel(QWidget):
         if names:
             self.pages.reveal()
         else:
-            self.pages.say(self.tr("No bodies yet: fit two in the panel Bodies, or read them from files."))
+            self.pages.say(
+                self.tr(
+                    "No bodies yet: fit two in the panel Bodies, read them from files, or close horizons to bodies "
+                    "with a common base."
+                )
+            )
         self._check()
 
     def chosen(self) -> tuple[str, ...]:
@@ -264,4 +269,6 @@ class MorphPanel(QWidget):
         parts.setSizes([280, 540])
         parts.setStretchFactor(1, 1)
         self.pages = Placeholder(parts)
+        for button in (self.add, self.horizons):
+            self.pages.offer(button)
         self.setLayout(self.pages)

@@ -24,6 +24,8 @@ class Placeholder(QStackedLayout):
         inner.addStretch(1)
         inner.addWidget(self._label)
         inner.addWidget(self.button, 0, Qt.AlignmentFlag.AlignHCenter)
+        self._offers = QVBoxLayout()
+        inner.addLayout(self._offers)
         inner.addStretch(2)
         self.addWidget(content)
         self.addWidget(page)
@@ -40,6 +42,14 @@ class Placeholder(QStackedLayout):
         self.button.setText(button)
         self.button.setVisible(bool(button))
         self.setCurrentWidget(self._page)
+
+    def offer(self, button: QPushButton) -> QPushButton:
+        """Put a button below every sentence that does what a button of the content does, which is hidden then."""
+        offered = QPushButton(button.text())
+        offered.setToolTip(button.toolTip())
+        offered.clicked.connect(button.click)
+        self._offers.addWidget(offered, 0, Qt.AlignmentFlag.AlignHCenter)
+        return offered
 
     def reveal(self) -> None:
         """Show the content."""

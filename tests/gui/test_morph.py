@@ -251,3 +251,25 @@ def test_a_film_shows_the_way_as_the_view_does(bodies, tmp_path, monkeypatch):
     morphing.film(tmp_path / "way.mp4")
     assert isinstance(bodies.failures.pop(), MissingDependencyError)
     assert not (tmp_path / "way.mp4").exists()
+
+
+def test_the_empty_panel_names_the_three_ways_to_bodies_and_offers_two_of_them(qtbot):
+    from PySide6.QtWidgets import QPushButton
+
+    from geofit.gui.panels.morph import MorphPanel
+
+    panel = MorphPanel()
+    qtbot.addWidget(panel)
+    panel.resize(900, 400)
+    panel.show()
+    qtbot.waitExposed(panel)
+    for words in ("panel Bodies", "files", "close horizons to bodies"):
+        assert words in panel.pages.text
+    shown = [button for button in panel.findChildren(QPushButton) if button.isVisible()]
+    for text, signal in ((panel.add.text(), panel.add_requested), (panel.horizons.text(), panel.horizons_requested)):
+        (button,) = [button for button in shown if button.text() == text]
+        with qtbot.waitSignal(signal, timeout=1000):
+            button.click()
+    panel.show_bodies((("a", "report"),))
+    assert panel.pages.text == ""
+    assert panel.horizons.isVisible()

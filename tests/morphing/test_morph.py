@@ -207,6 +207,7 @@ def test_open_and_inconsistent_meshes_are_refused_with_their_edges() -> None:
     with pytest.raises(MorphError) as caught:
         geofit.morph(ball, implicit.TriangleMesh(ball.vertices, turned))
     assert caught.value.code == "morphing.mesh-inconsistent"
+    assert str(caught.value).endswith("Repair it in the program that made it.")
 
 
 @pytest.mark.parametrize(
