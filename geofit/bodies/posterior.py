@@ -36,7 +36,7 @@ SAMPLES = 200
 USUAL = 0.18
 TRUST = 30
 #: What makes the scale of outlines come true: a left-out section has a neighbour on each side, as far as two sections
-#: are apart; found on sixty planted bodies on 4 to 10 planes and judged on sixty others.
+#: are apart; found on 120 planted bodies on 4 to 10 planes (docs/section_trials.md), judged on thirty others.
 BETWEEN = 1.25
 #: What makes the chance of lying inside come true on planted bodies of fifteen shapes (benchmarks/bodies.py; judged on
 #: other bodies, patterns of holes and noise): factors of the standard deviation in the body and off it - samples that
