@@ -156,7 +156,7 @@ class SectionPanel(QWidget):
             self.canvas.repaint_figure()
 
     def show_preview(self, body: SectionBody | None, text: str = "") -> None:
-        """Cut a body with the settings that are being edited, too; None: no more, and ``text`` says why."""
+        """Cut a body with the settings that are being edited, too; None: no more, and ``text`` states the reason."""
         changed = body is not self.preview
         self.preview = body
         if text:
