@@ -313,7 +313,7 @@ def test_what_cannot_be_read_says_so(tmp_path, capfd):
 
 def test_canonical_text():
     text = (
-        "#1 = MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#2,#3),#4);\n"
+        "#1 = MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#2,#3),#4);\n#3 = SHELL_BASED_SURFACE_MODEL('',());\n"
         "#5 = NEXT_ASSEMBLY_USAGE_OCCURRENCE('17','层𠀀','',#1,#2,$);\nENDSEC;\nEND-ISO-10303-21;\n"
     )
     out = canonical(text)
