@@ -65,8 +65,10 @@ class LongArray:
         start, stop, step = index.indices(len(self))
         if step == 1:
             return self.read(start, stop)
+        # Copies: a view would keep its whole block.
         parts = [
-            self.read(low, min(low + BLOCK, stop))[(start - low) % step :: step] for low in range(start, stop, BLOCK)
+            self.read(low, min(low + BLOCK, stop))[(start - low) % step :: step].copy()
+            for low in range(start, stop, BLOCK)
         ]
         return np.concatenate(parts) if parts else self.read(start, start)
 

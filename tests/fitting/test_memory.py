@@ -59,3 +59,17 @@ def test_pairs_are_the_same_slab_by_slab(monkeypatch, seed):
     found = near_pairs(place, 1.0)
     assert len(found) > 200
     assert np.array_equal(found, np.unique(whole, axis=0))
+
+
+def test_every_so_many_rows_of_a_long_array_take_no_more_than_themselves():
+    block = long_arrays.BLOCK
+    rows = long_arrays.LongArray((40 * block,), lambda start, stop: np.arange(start, stop, dtype=float))
+    tracemalloc.start()
+    try:
+        found = rows[3 : 39 * block : 1000]
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert np.array_equal(found, np.arange(3, 39 * block, 1000))
+    # Views of the blocks would keep all forty of them.
+    assert peak < 4 * 8 * block
