@@ -285,7 +285,8 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
         say(f"""*1e8 points* were not measured to the end; at the rate of {largest:,} they take {hundred:.0f} s after
             reading on two free processors.""")
     sizes = " and ".join(f"{row['peak']:.0f} MB at {n:,}" for n, row in sorted(files.items())[-2:])
-    say(f"The peak memory of a streamed run grows, too: {sizes}. So that of 1e10 points is not extrapolated.")
+    say(f"""Peak memory of a streamed run: {sizes}. It holds the cells of the spline and the coincident points (their
+        number grows with the square of the density), not the cloud; that of 1e10 points is not extrapolated.""")
     say(f"""*1e10 points*, from {rate * 1e6:.2f} s a million at {largest:,}: {hours:.0f} h of one processor, 240 GB of
         disk for the points and some 80 GB for the distances. Only the distances are spread over the workers: the fit
         takes {best["fit"] / largest * 1e10 / 3600:.0f} h on one processor however many there are.""")
