@@ -2,10 +2,10 @@
 
     python benchmarks/drawing.py [POINTS]
 
-(1e7 points if none are given; the name of a task measures that one anew.) Each row runs in a process of its own,
-where there is no display on a virtual screen. The figures are kept in build/drawing.json, and the last section of
-docs/scale.md is written from them; ``page`` in place of POINTS writes it again. Seconds are those of the processor,
-all threads together; the software that draws where there is no graphics card takes two of them at a time.
+(1e7 points if none are given; the name of a task measures that one anew.) Each row runs in a process of its own;
+without a display, on a virtual screen. The figures stay in build/drawing.json; the last section of docs/scale.md is
+written from them, and ``page`` in place of POINTS writes it again. Seconds are CPU time summed over all threads;
+software rendering uses two threads.
 """
 
 from __future__ import annotations
@@ -277,13 +277,12 @@ def section(found: dict[str, dict[str, Figures]], count: int) -> str:
     def say(text: str) -> None:
         lines.extend([*textwrap.wrap(" ".join(text.split()), 118, break_on_hyphens=False), ""])
 
-    say(f"""`python benchmarks/drawing.py` measures this section and writes it; seconds are those of the processor, all
-        threads together. There is no graphics card: VTK draws by software (llvmpipe) on {os.cpu_count()} processors,
-        into 1280 x 800 pixels.""")
-    say("""A surface has triangles within 1/8000 of its width, more of them where it bends more. Where the view comes to
-        rest nearer, what is in sight is triangulated anew in a thread, so finely that no place of a triangle is drawn
-        more than half a pixel from the surface; neighbouring patches share their vertices, so there are no cracks
-        (`tests/gui/test_sight.py`). While the viewpoint moves some 1,000 triangles of each surface are drawn.""")
+    say(f"""`python benchmarks/drawing.py` measures this section and writes it; seconds are CPU time summed over all
+        threads. VTK renders in software (llvmpipe) on {os.cpu_count()} processors, at 1280 x 800 pixels.""")
+    say("""Triangles lie within 1/8000 of a surface's width, more of them where it bends more. When the view comes to
+        rest closer, a thread triangulates the visible part again, to within half a pixel of the surface. Neighbouring
+        patches share their vertices, so no cracks open (`tests/gui/test_sight.py`). While the view moves, about 1,000
+        triangles of each surface are drawn.""")
     lines += [
         f"| ten horizons | triangles | s | tolerance, m | largest error at {HORIZONS * PLACES:,} places, m |",
         "|---|---|---|---|---|",
@@ -294,11 +293,11 @@ def section(found: dict[str, dict[str, Figures]], count: int) -> str:
             f"| {names[kind]} | {row['count']:,.0f} | {row['cpu']:.2f} | {row['tolerance']:.4f} | {row['error']:.4f} |"
         )
     lines.append("")
-    say(f"""A cloud of more than 10,000 points is sorted into blocks of 4,096 neighbours; every beginning of a block is
-        spread over it. A frame draws of each block in sight as many as its pixels deserve: a point for four
-        pixels of the frame while the viewpoint moves (which, where drawing is slow, has a third of the pixels a side),
-        three for two at rest. All {count:,} points can be picked; they are looked for in the blocks under the
-        pointer. Beside ten horizons:""")
+    say(f"""A cloud of more than 10,000 points is sorted into blocks of 4,096 neighbours; the first points of
+        each block are spread over it. A frame draws points of each visible block in proportion to its pixels: one for
+        four pixels while the view moves (at a third of the pixels a side where rendering is slow), three for two at
+        rest. All {count:,} points can be picked; only the blocks under the pointer are searched. With ten horizons in
+        the scene:""")
     lines += [
         "| cloud, view | points a moving frame | ms of the processor | frames/s | points at rest | s "
         "| picking: median, slowest, ms | first, median, slowest surface, ms | same as a search of all |",
@@ -317,8 +316,8 @@ def section(found: dict[str, dict[str, Figures]], count: int) -> str:
     row = found["frames"]["even"]
     slowest = max(max(r["all frame"], r["near frame"]) for r in found["frames"].values())
     load = max(r["load"] for r in found["frames"].values())
-    beside = f", next to other work (load {load:.0f})" if load > 1.5 * (os.cpu_count() or 1) else ""
-    say(f"""Frames/s are those of this run{beside}. A frame takes at most {slowest:.0f} ms of the processor: at least
+    beside = f" on a machine with other load ({load:.0f})" if load > 1.5 * (os.cpu_count() or 1) else ""
+    say(f"""Frames/s were measured in this run{beside}. A frame takes at most {slowest:.0f} ms of CPU time: at least
         {1e3 / slowest:.0f} frames/s where one processor is free.""")
     say(f"""To show {count:,} points takes {row["shown"]:.1f} s. Their coordinates are {row["input"]:.0f} MB; the scene
         adds {row["after"] - row["before"]:.0f} MB when they are shown, and {row["drawn"] - row["before"]:.0f} MB with

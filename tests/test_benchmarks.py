@@ -209,7 +209,7 @@ def test_the_section_on_drawing_takes_the_place_of_the_last_one(load):
     }
     text = drawing.section(found, 10_000_000)
     told = " ".join(text.split())
-    assert "at most 40 ms of the processor: at least 25 frames/s" in told
+    assert "at most 40 ms of CPU time: at least 25 frames/s" in told
     assert "5 of 5" in told
     assert "takes 200 MB in the window" in told
     assert ": 100 bytes for each point" in told

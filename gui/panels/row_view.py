@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPainterPath, QPalette, QPen
 from PySide6.QtWidgets import QHeaderView, QStyle, QStyledItemDelegate, QStyleOptionViewItem, QTreeView, QWidget
@@ -16,7 +18,11 @@ SIDE, CLOSED = 24, 0.45
 
 
 class _Cell(QStyledItemDelegate):
-    """A cell that is a small picture and a button."""
+    """A cell that is a small picture and a button; ``draw(painter, place, colour, index)`` draws the picture."""
+
+    def __init__(self, parent: QWidget, draw: Callable[[QPainter, QPointF, QColor, _Index], None]) -> None:
+        super().__init__(parent)
+        self._draw = draw
 
     def sizeHint(self, option: QStyleOptionViewItem, index: _Index) -> QSize:  # noqa: N802
         """Return a square."""
@@ -36,53 +42,43 @@ class _Cell(QStyledItemDelegate):
         group = QPalette.ColorGroup.Active if active else QPalette.ColorGroup.Inactive
         painter.save()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        self.draw(painter, QRectF(option.rect).center(), option.palette.color(group, role), index)
+        self._draw(painter, QRectF(option.rect).center(), option.palette.color(group, role), index)
         painter.restore()
 
-    def draw(self, painter: QPainter, at: QPointF, colour: QColor, index: _Index) -> None:
-        """Draw the picture about a place."""
-        raise NotImplementedError
 
-
-class _Visibility(_Cell):
-    """An open or a closed eye for the check state of a cell."""
-
-    def draw(self, painter: QPainter, at: QPointF, colour: QColor, index: _Index) -> None:
-        """Draw the eye."""
-        state = index.data(Qt.ItemDataRole.CheckStateRole)
-        if state is None:
-            return
-        opened = Qt.CheckState(state) == Qt.CheckState.Checked
-        painter.setOpacity(1.0 if opened else CLOSED)
-        painter.setPen(QPen(colour, 1.3))
-        lid = QPainterPath(at + QPointF(-6.5, 0))
-        lid.quadTo(at + QPointF(0, 8 if not opened else -8), at + QPointF(6.5, 0))
-        if opened:
-            lid.quadTo(at + QPointF(0, 8), at + QPointF(-6.5, 0))
-        painter.drawPath(lid)
-        if opened:
-            painter.setBrush(colour)
-            painter.drawEllipse(at, 1.7, 1.7)
-        else:
-            for x, y in ((-3.6, 2.6), (0.0, 4.0), (3.6, 2.6)):
-                painter.drawLine(at + QPointF(x, y), at + QPointF(1.35 * x, y + 2.4))
-
-
-class _Opacity(_Cell):
-    """A disc that is as full as a layer is opaque, EditRole 0 to 1."""
-
-    def draw(self, painter: QPainter, at: QPointF, colour: QColor, index: _Index) -> None:
-        """Draw the disc."""
-        share = index.data(Qt.ItemDataRole.EditRole)
-        if share is None:
-            return
-        box = QRectF(at.x() - 5, at.y() - 5, 10, 10)
-        painter.setPen(QPen(colour, 1.2))
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.drawEllipse(box)
-        painter.setPen(Qt.PenStyle.NoPen)
+def _draw_visibility(painter: QPainter, at: QPointF, colour: QColor, index: _Index) -> None:
+    """Draw an open or a closed eye for the check state of a cell."""
+    state = index.data(Qt.ItemDataRole.CheckStateRole)
+    if state is None:
+        return
+    opened = Qt.CheckState(state) == Qt.CheckState.Checked
+    painter.setOpacity(1.0 if opened else CLOSED)
+    painter.setPen(QPen(colour, 1.3))
+    lid = QPainterPath(at + QPointF(-6.5, 0))
+    lid.quadTo(at + QPointF(0, 8 if not opened else -8), at + QPointF(6.5, 0))
+    if opened:
+        lid.quadTo(at + QPointF(0, 8), at + QPointF(-6.5, 0))
+    painter.drawPath(lid)
+    if opened:
         painter.setBrush(colour)
-        painter.drawPie(box, 90 * 16, -round(360 * 16 * share))
+        painter.drawEllipse(at, 1.7, 1.7)
+    else:
+        for x, y in ((-3.6, 2.6), (0.0, 4.0), (3.6, 2.6)):
+            painter.drawLine(at + QPointF(x, y), at + QPointF(1.35 * x, y + 2.4))
+
+
+def _draw_opacity(painter: QPainter, at: QPointF, colour: QColor, index: _Index) -> None:
+    """Draw a disc that is as full as a layer is opaque, EditRole 0 to 1."""
+    share = index.data(Qt.ItemDataRole.EditRole)
+    if share is None:
+        return
+    box = QRectF(at.x() - 5, at.y() - 5, 10, 10)
+    painter.setPen(QPen(colour, 1.2))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.drawEllipse(box)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(colour)
+    painter.drawPie(box, 90 * 16, -round(360 * 16 * share))
 
 
 class RowView(QTreeView):
@@ -96,7 +92,7 @@ class RowView(QTreeView):
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self._pressed = QModelIndex()
-        self._cells = _Visibility(self), _Opacity(self)
+        self._cells = _Cell(self, _draw_visibility), _Cell(self, _draw_opacity)
         for column, cell in zip((SHOWN, OPACITY), self._cells, strict=True):
             self.setItemDelegateForColumn(column, cell)
 
