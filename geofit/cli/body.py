@@ -11,7 +11,7 @@ import typer
 from geofit.cli.app import app
 from geofit.cli.console import listening, print_counts, print_issues, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Author, Certificate, Json, Lang, LanguageCode, Organisation, OriginChoice, Out, Report
-from geofit.cli.signing import signed_by
+from geofit.cli.signing import read_origin, signed_by
 from geofit.data.errors import InputError
 from geofit.data.messages import Message, message
 
@@ -62,13 +62,13 @@ def body(
     from geofit.io.boreholes import Boreholes
     from geofit.project.body_run import run_body
 
-    settings = BodySettings(epsilon=epsilon)
+    settings, zero = BodySettings(epsilon=epsilon), read_origin(origin)
     title, page = None, lang.value if certificate else ""
     with listening() as progress:
         drawn = _drawn(source, bool(code or survey or intervals), layer or [], settings)
         if drawn is not None:
             name = _name(source, layer or [])
-            signed = signed_by(None, author, organisation, origin, certificate=page)
+            signed = signed_by(None, author, organisation, zero, certificate=page)
             run = run_body(drawn.data, out, name=name, settings=settings, progress=progress, signed=signed)
         else:
             holes = _read(source, survey, intervals or [])
@@ -76,7 +76,7 @@ def body(
             print_counts(holes.counts)
             title = getattr(holes, "title", None)
             site = None if isinstance(holes, Boreholes) else holes
-            signed = signed_by(site, author, organisation, origin, certificate=page)
+            signed = signed_by(site, author, organisation, zero, certificate=page)
             run = run_body(holes, out, codes=code, settings=settings, progress=progress, signed=signed)
         if report:
             from geofit.data.languages import language

@@ -21,7 +21,7 @@ from geofit.cli.options import (
     OriginChoice,
     Tolerance,
 )
-from geofit.cli.signing import signed_by
+from geofit.cli.signing import read_origin, signed_by
 from geofit.cli.sources import read_source
 from geofit.data.errors import InputError
 from geofit.data.messages import message
@@ -64,13 +64,14 @@ def export(
     from geofit.io.export.write import untrimmed, write_surface
     from geofit.io.surface_files import read_surfaces
 
+    zero = read_origin(origin)
     site = None if points is None else read_source(points, {}, None)
     if site is not None:
         print_issues(site.issues)
     given = read_surfaces(surfaces)
     for sentence in untrimmed(given, to):
         say(sentence)
-    signed = signed_by(site, author, organisation, origin, certificate=lang.value if certificate else "")
+    signed = signed_by(site, author, organisation, zero, certificate=lang.value if certificate else "")
     if to == "step":
         files = _write_step(given, out, site, signed)
     else:

@@ -34,7 +34,7 @@ from geofit.cli.options import (
     Z,
 )
 from geofit.cli.running import run_site
-from geofit.cli.signing import signed_by
+from geofit.cli.signing import read_origin, signed_by
 from geofit.cli.sources import read_source
 from geofit.data.setting_texts import SETTINGS
 
@@ -146,7 +146,8 @@ def fit(
     changes: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     columns = {"x": x, "y": y, "z": z, "surface": surface, "section": section, "sep": sep, "decimal": decimal}
     columns |= {"crs": crs, "unit": unit}
-    FitSettings(**changes)  # a bad value is reported before files are read
+    FitSettings(**changes)  # bad values are reported before files are read
+    zero = read_origin(origin)
     from geofit.io.clouds import is_cloud
 
     if source.suffix.casefold() != ".toml" and (stream or is_cloud(source)):
@@ -155,7 +156,7 @@ def fit(
         # What a cloud has no use for is refused, not ignored.
         used = (("--separate", separate), ("--bands", bands), ("--crs", crs), ("--dips", dips == DipsChoice.FIT))
         only = [word for word, given in used if given]
-        signed = signed_by(None, author, organisation, origin, certificate="en" if certificate else "")
+        signed = signed_by(None, author, organisation, zero, certificate="en" if certificate else "")
         return fit_cloud_file(
             source,
             out,
@@ -185,7 +186,7 @@ def fit(
             bands=bands,
             scheduler=where,
             workers=workers,
-            signed=signed_by(site, author, organisation, origin, certificate="en" if certificate else ""),
+            signed=signed_by(site, author, organisation, zero, certificate="en" if certificate else ""),
         )
 
 

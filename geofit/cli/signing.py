@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from math import isfinite
+from typing import TYPE_CHECKING, cast
 
 from geofit.data.errors import InputError
 from geofit.data.messages import message
@@ -13,18 +14,45 @@ if TYPE_CHECKING:
     from geofit.data.site import Site
     from geofit.project.step_files import Signed
 
-__all__ = ["signed_by"]
+__all__ = ["read_origin", "signed_by"]
+
+#: An origin as given: map, local, datum (of the site), or easting, northing and elevation in metres.
+GivenOrigin = str | tuple[float, float, float]
+
+
+def read_origin(text: str) -> GivenOrigin:
+    """Return the origin that the command line names, before any file is read.
+
+    Raises
+    ------
+    InputError
+        If the text is neither a known word nor three finite numbers.
+    """
+    word = text.strip()
+    if word in ("map", "local", "datum"):
+        return word
+    try:
+        easting, northing, elevation = (float(part) for part in word.split(","))
+        if isfinite(easting + northing + elevation):
+            return easting, northing, elevation
+    except ValueError:
+        pass
+    raise InputError(
+        message("cli.origin-unknown", "The origin '{text}' is unknown", text=text),
+        message("cli.give-origin", "Give map, local, datum, or easting, northing and elevation: E,N,Z in metres."),
+        value=text,
+    )
 
 
 def signed_by(
-    site: Site | None, author: str | None, organisation: str | None, origin: str, *, certificate: str = ""
+    site: Site | None, author: str | None, organisation: str | None, origin: GivenOrigin, *, certificate: str = ""
 ) -> Signed:
     """Return what STEP files state; author and organisation are by default those of the site's report.
 
     Raises
     ------
     InputError
-        If the origin is not known, or the site has no datum.
+        If the origin is the site's datum, and the site has none.
     """
     from geofit.project.step_files import Signed
 
@@ -33,30 +61,18 @@ def signed_by(
         title.author if author is None else author,
         title.organisation if organisation is None else organisation,
         certificate,
-        _origin(origin.strip(), site),
+        _datum_of(site) if origin == "datum" else cast("Origin", origin),
     )
 
 
-def _origin(text: str, site: Site | None) -> Origin:
-    if text in ("map", "local"):
-        return text
-    if text == "datum":
-        if site is None or site.datum is None:
-            raise InputError(
-                message("cli.site-without-datum", "The site states no project datum"),
-                message(
-                    "cli.give-datum",
-                    "Write datum = [E, N, Z] under [site] of the site file, or give the numbers: --origin E,N,Z.",
-                ),
-                value=text,
-            )
-        return site.datum
-    try:
-        easting, northing, elevation = (float(part) for part in text.split(","))
-    except ValueError:
+def _datum_of(site: Site | None) -> Origin:
+    if site is None or site.datum is None:
         raise InputError(
-            message("cli.origin-unknown", "The origin '{text}' is unknown", text=text),
-            message("cli.give-origin", "Give map, local, datum, or easting, northing and elevation: E,N,Z in metres."),
-            value=text,
-        ) from None
-    return easting, northing, elevation
+            message("cli.site-without-datum", "The site states no project datum"),
+            message(
+                "cli.give-datum",
+                "Write datum = [E, N, Z] under [site] of the site file, or give the numbers: --origin E,N,Z.",
+            ),
+            value="datum",
+        )
+    return site.datum

@@ -434,7 +434,11 @@ def test_step_files_state_origin_author_and_certificate(tmp_path, monkeypatch, c
         assert json.loads(text)["sigma"] == pytest.approx(float(before.attributes["sigma_m"]), rel=1e-4)
     for arguments, words in (
         (("fit", picks, "--out", out, "--origin", "datum"), "states no project datum"),
-        (("fit", picks, "--out", out, "--origin", "1,2"), "The origin '1,2' is unknown"),
+        # Before any file is read.
+        *(
+            (("fit", "none.csv", "--out", out, "--origin", word), f"The origin '{word}' is unknown")
+            for word in ("1,2", "nan,0,0", "0,0,inf", "here")
+        ),
         (
             ("export", step, "--to", "obj", "--out", tmp_path / "x.obj", "--origin", "local"),
             "--origin is for STEP files",
