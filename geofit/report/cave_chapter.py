@@ -68,7 +68,8 @@ def cave_picture(what: str, name: str) -> str:
 def cave_chapter(found: CaveFindings, t: Language) -> Chapter:
     """Lay out everything about one survey."""
     blocks: list[Block] = [_facts(found, t), *_drawings(found, t), *_loops(found, t), *_volume(found, t)]
-    blocks += [*_strata(found, t), *_clearance(found, t), *_walls(found, t), *_data(found, t), *_method(found, t)]
+    blocks += [*_strata(found, t), *_clearance(found, t), *_data(found, t), *_method(found, t)]
+    blocks += _walls(found, t)  # last, for its table can fill pages
     return Chapter(t("Passages of {name}", name=found.name), tuple(blocks))
 
 
