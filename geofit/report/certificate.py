@@ -82,7 +82,7 @@ def certificate(
                 ("", first.sha256[32:]),
                 (t("Format"), "ISO 10303-242 (AP242)"),
                 *_coordinates(offset, t),
-                (t("Organisation"), organisation),
+                (t("Issued by"), organisation),
                 (t("Author"), author),
                 (t("Program"), program),
                 (t("Read back by"), f"OpenCASCADE {known.get('OpenCASCADE', '')}"),

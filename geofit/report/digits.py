@@ -162,17 +162,19 @@ def kilobytes(value: float) -> str:
 
 
 def measured(value: float | None, unit: str) -> str:
-    """Write what a check measured with its unit: lengths and angles as metres(), counts as they are.
+    """Write what a check measured with its unit: lengths and angles as metres(), areas and volumes as volume().
 
     Examples
     --------
-    >>> measured(3.0, ""), measured(0.25, "deg").split()
-    ('3', ['0.250', '°'])
+    >>> measured(3.0, ""), measured(0.25, "deg").split(), measured(437189.0, "m3").split()
+    ('3', ['0.250', '°'], ['437', '189', 'm³'])
     """
     if value is None or not math.isfinite(value):
         return NOTHING
     if unit in ("m", "deg", "°"):
         return f"{metres(value)}{_GAP}{_UNITS.get(unit, unit)}"
+    if unit in ("m2", "m3"):
+        return _measure(value, _UNITS[unit])
     text = count(value) if float(value).is_integer() else f"{value:.3g}".replace("-", "−")
     return f"{text}{_GAP}{_UNITS.get(unit, unit)}".rstrip(_GAP)
 
