@@ -179,15 +179,15 @@ class Bodies(QObject):
             self._fitting.push(SetBody(name, record))
         self.showing.chosen = name
         self.showing.renew()
-        a, verdict = result.accuracy, result.verdict
+        verdict = result.verdict
         text = message("gui.log-body-volume", "{name}: {volume:.6g} m³", name=name, volume=result.mesh.volume)
-        if a is not None and verdict is not None:
+        if verdict is not None:
             text = message(
                 "gui.log-body-fitted",
-                "{name}: {verdict}, σ {sigma:.3g} m, {volume:.6g} m³, violations: {count}",
+                "{name}: {verdict}, {data}, {volume:.6g} m³, violations: {count}",
                 name=name,
                 verdict=verdict.word,
-                sigma=a.sigma,
+                data=verdict.data.text,
                 volume=result.mesh.volume,
                 count=len(result.violations),
             )
