@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QStandardPaths, Signal
 from PySide6.QtWidgets import QDialog, QFileDialog, QMessageBox, QWidget
@@ -32,6 +33,9 @@ from geofit.project.saving import (
     save_state,
 )
 
+if TYPE_CHECKING:
+    from geofit.gui.wizard.horizon_page import BuiltHorizon
+
 __all__ = ["Files"]
 
 _LOG = logging.getLogger(__name__)
@@ -39,9 +43,13 @@ PROJECT = ".geofit"
 
 
 class Files(QObject):
-    """What the File menu does with sites and projects. ``reported(text)`` says in the status bar what was done."""
+    """What the File menu does with sites and projects. ``reported(text)`` says in the status bar what was done.
+
+    ``built(name, rule, order)`` comes for each horizon that was built while a site was imported, once it is open.
+    """
 
     reported = Signal(str)
+    built = Signal(str, object, object)
 
     def __init__(
         self, session: Session, activity: Activity, fitting: Fitting, preferences: Preferences, window: QWidget
@@ -89,7 +97,7 @@ class Files(QObject):
             return
         wizard = ImportWizard(chosen, chosen[0].parent, parent=self._window)
         if wizard.exec() == QDialog.DialogCode.Accepted:
-            self._open(wizard.site_file)
+            self._open(wizard.site_file, wizard.built)
 
     def close(self) -> None:
         """Close the site, after asking whether to save."""
@@ -182,11 +190,18 @@ class Files(QObject):
         work = (session.site_file, session.final.added)
         self._activity.do(title, read_again, *work, on_done=lambda site: self._recovered(session, site))
 
-    def _open(self, path: Path) -> None:
+    def _open(self, path: Path, built: Sequence[BuiltHorizon] = ()) -> None:
+        """Open a site or a project; horizons that were built while it was imported are steps that can be undone."""
+
+        def opened(found: Site | Opened) -> None:
+            self._opened(path, found)
+            for one in built:
+                self.built.emit(one.name, one.rule, one.order)
+
         self._preferences.folder = str(path.parent)
         title = self.tr("Open {name}").format(name=path.name)
         read = read_project if path.suffix == PROJECT else _read_site
-        self._activity.do(title, read, path, on_done=lambda found: self._opened(path, found))
+        self._activity.do(title, read, path, on_done=opened)
 
     def _open_sample(self, place: Path) -> None:
         title = self.tr("Open sample site")

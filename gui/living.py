@@ -17,13 +17,13 @@ from geofit.gui.fitting import Fitting
 from geofit.gui.offer_bar import OfferBar
 from geofit.gui.session import Session
 from geofit.gui.translate import translated
+from geofit.gui.view3d.picks import show_picks
 from geofit.gui.workspace import Workspace
 from geofit.io.contact_rules import ContactRule
 from geofit.project.adding import Added, add_files
 from geofit.project.comparing import made_comparison
 from geofit.project.data_change import DataChange, arrivals, change_of_data, changed_files
 from geofit.project.horizon_builder import RulePicks, horizon_table
-from geofit.project.listing import listing
 from geofit.project.provenance import Provenance
 from geofit.project.saving import read_again
 from geofit.site.states import Comparison
@@ -97,19 +97,16 @@ class Living(QObject):
 
         document = self._document
         dialog = HorizonBuilder(document.read, document.horizons, self._window)
-        dialog.previewed.connect(self._preview)
-        dialog.built.connect(self._build)
+        dialog.form.previewed.connect(self._preview)
+        dialog.form.built.connect(self.build)
         dialog.exec()
 
     def _preview(self, picks: RulePicks | None) -> None:
         """Show picks in the scene, or take them away."""
-        name, view = self.tr("Preview"), self._panels.view
-        if picks is None or not len(picks.points):
-            view.remove_surface(name)
-        else:
-            view.show_listing(name, listing(picks.points, frozenset(), None))
+        show_picks(self._panels.view, self.tr("Preview"), picks)
 
-    def _build(self, name: str, rule: ContactRule, order: tuple[str, ...]) -> None:
+    def build(self, name: str, rule: ContactRule, order: tuple[str, ...]) -> None:
+        """Add a horizon that a rule picks, when its turn comes; the horizons stand in ``order``, the highest first."""
         tables: tuple[str, ...] = ()
 
         def work() -> Work:

@@ -46,8 +46,8 @@ def apply_theme(app: QApplication, theme: Theme) -> None:
     for role in ("WindowText", "Text", "ButtonText"):
         muted = QColor(_MUTED["dark" if dark else "light"])
         palette.setColor(QPalette.ColorGroup.Disabled, getattr(QPalette.ColorRole, role), muted)
-    app.setStyle(DarkStyle(palette) if dark else Style(palette))
     app.setPalette(palette)
+    app.setStyle(DarkStyle(palette) if dark else Style(palette))
 
 
 def is_dark(palette: QPalette) -> bool:

@@ -112,6 +112,13 @@ class _Set:
         wizard.go.click()
         self.until(lambda: not wizard.running)
         self.shoot("03_import_result", wizard)
+        wizard.build.click()
+        assert wizard.horizons is not None
+        form = wizard.horizons.form
+        form.check(*(form.codes.item(row, 0).text() for row in range(2)))
+        self.idle(1.0)
+        self.shoot("24_import_build", wizard)
+        wizard.reject()
         self.close(wizard)
 
     def site(self) -> None:

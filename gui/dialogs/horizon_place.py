@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QAbstractItemView, QHBoxLayout, QListWidget, QPushButton, QVBoxLayout, QWidget
 
 __all__ = ["HorizonPlace"]
@@ -24,7 +25,10 @@ class HorizonPlace(QWidget):
         self.list = QListWidget()
         self.list.setAccessibleName(self.tr("Order of the horizons"))
         self.list.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
-        self.list.setMinimumHeight(5 * (self.fontMetrics().height() + 4))
+        self.list.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        line = self.fontMetrics().height() + 4
+        self.list.setMinimumHeight(5 * line)
+        self.list.setMaximumHeight(7 * line)
         self.up, self.down = QPushButton(self.tr("&Up")), QPushButton(self.tr("&Down"))
         self.up.clicked.connect(lambda: self._move(-1))
         self.down.clicked.connect(lambda: self._move(1))
@@ -61,6 +65,13 @@ class HorizonPlace(QWidget):
             self._levels[self._name] = self._level
             self._others = list(self.order)
         self._level, self._moved = None, False
+        self._show()
+
+    def withdraw(self, name: str) -> None:
+        """Take a horizon out from among the others."""
+        self._others = [other for other in self._others if other != name]
+        self._levels.pop(name, None)
+        self._at = min(self._at, len(self._others))
         self._show()
 
     def _move(self, by: int) -> None:

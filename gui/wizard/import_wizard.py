@@ -29,6 +29,7 @@ from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.marks import icon
 from geofit.gui.translate import user_language
 from geofit.gui.wizard.draft import Draft, drafts_of, free_name, preview_again
+from geofit.gui.wizard.horizon_page import BuiltHorizon, HorizonPage
 from geofit.gui.wizard.memory import Memory
 from geofit.gui.wizard.result_page import ResultPage
 from geofit.gui.wizard.table_page import TablePage
@@ -45,8 +46,8 @@ NAMED = 4
 class ImportWizard(TaskDialog):
     """Asks what the tables of some files hold, imports them, and shows what came of it.
 
-    Accepted, ``site_file`` is the site that was written into ``folder``; left, none of it stays. Files may be dropped
-    on it.
+    Accepted, ``site_file`` is the site that was written into ``folder``, and ``built`` are the horizons to add to it;
+    left, none of it stays. Files may be dropped on it.
     """
 
     def __init__(self, files: Sequence[Path], folder: Path, parent: QWidget | None = None) -> None:
@@ -74,6 +75,10 @@ class ImportWizard(TaskDialog):
         self.target.textChanged.connect(self._hint)
         self.back = QPushButton(self.tr("&Back"))
         self.back.clicked.connect(self._go_back)
+        self.build = QPushButton(self.tr("&Build horizons…"))
+        self.build.setToolTip(self.tr("Group codes of the logs to horizons: top or base, which bed, thin beds ignored"))
+        self.build.clicked.connect(self._go_build)
+        self.horizons: HorizonPage | None = None
         self.go.clicked.connect(self._go_on)
         self.pages = QStackedWidget()
         self.pages.addWidget(self._first_page())
@@ -82,8 +87,8 @@ class ImportWizard(TaskDialog):
         layout = QVBoxLayout(self)
         layout.addWidget(self.pages, 1)
         layout.addLayout(self.message_row)
-        layout.addLayout(self.foot(self.back))
-        self.resize(QSize(1060, 640).boundedTo(self.screen().availableSize()))
+        layout.addLayout(self.foot(self.back, self.build))
+        self.resize(QSize(1060, 700).boundedTo(self.screen().availableSize()))
         self._hint()
         self.refresh()
         self.add_files(files)
@@ -104,12 +109,18 @@ class ImportWizard(TaskDialog):
     def refresh(self) -> None:
         """Enable what can be done."""
         super().refresh()
-        second, idle = self.pages.currentIndex() == 1, not self.running
-        self.back.setVisible(second)
+        page, idle = self.pages.currentIndex(), not self.running
+        self.back.setVisible(page > 0)
         self.back.setEnabled(idle)
-        self.go.setText(self.tr("&Open site") if second else self.tr("&Read"))
-        ready = self._sound if second else self._ready
+        self.build.setVisible(page == 1 and self._logged)
+        self.go.setText(self.tr("&Open site") if page else self.tr("&Read"))
+        ready = self._sound if page else self._ready
         self.go.setEnabled(ready and idle)
+
+    @property
+    def built(self) -> tuple[BuiltHorizon, ...]:
+        """The horizons that were built from lithology, in the order in which they were added."""
+        return () if self.horizons is None else tuple(self.horizons.built)
 
     def tell_failure(self, error: Exception) -> None:
         """Say what went wrong; the boxes show again what the table holds."""
@@ -122,6 +133,12 @@ class ImportWizard(TaskDialog):
         for path in self._made:
             path.unlink(missing_ok=True)
         self._made.clear()
+
+    def done(self, result: int) -> None:
+        """Let go of the 3D view."""
+        if self.horizons is not None:
+            self.horizons.close()
+        super().done(result)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802
         """Take files, but not while others are looked at."""
@@ -181,7 +198,11 @@ class ImportWizard(TaskDialog):
 
     @property
     def _sound(self) -> bool:
-        return self.found is not None and bool(self.found.site.horizons)
+        return self.found is not None and bool(self.found.site.horizons or self.built)
+
+    @property
+    def _logged(self) -> bool:
+        return self.found is not None and any(one.logs for one in self.found.site.boreholes)
 
     def _unsettled(self, draft: Draft) -> bool:
         return not draft.kind or bool(draft.missing(ground=self._ground))
@@ -212,7 +233,7 @@ class ImportWizard(TaskDialog):
         """Say what is still needed, or what will be written over."""
         wanting = [draft.title for draft in self._drafts if self._unsettled(draft)]
         target = self._target()
-        if self.pages.currentIndex() == 1:
+        if self.pages.currentIndex():
             ready = self._made and self._sound
             self.say(self.tr("The site is written; Cancel takes it away again.") if ready else "", "passed")
         elif wanting:
@@ -268,12 +289,32 @@ class ImportWizard(TaskDialog):
         return path if path.suffix == ".toml" else path.with_name(f"{path.name}.toml")
 
     def _go_back(self) -> None:
-        self.pages.setCurrentIndex(0)
+        self.pages.setCurrentIndex(self.pages.currentIndex() - 1)
         self._hint()
         self.refresh()
 
+    def _go_build(self) -> None:
+        """Show the builder; what was built of the same import is still there."""
+        assert self.found is not None
+        if self.horizons is None:
+            self.horizons = HorizonPage(self.found.site, self)
+            self.horizons.changed.connect(self._hint)
+            self.horizons.changed.connect(self.refresh)
+            self.pages.addWidget(self.horizons)
+        self.pages.setCurrentWidget(self.horizons)
+        self._hint()
+        self.refresh()
+
+    def _forget_built(self) -> None:
+        """Another import has other logs: begin building anew."""
+        if self.horizons is not None:
+            self.pages.removeWidget(self.horizons)
+            self.horizons.close()
+            self.horizons.deleteLater()
+            self.horizons = None
+
     def _go_on(self) -> None:
-        if self.pages.currentIndex() == 1:
+        if self.pages.currentIndex():
             self._made.clear()
             self.accept()
             return
@@ -289,6 +330,7 @@ class ImportWizard(TaskDialog):
 
     def _imported(self, was_there: bool, found: Import) -> None:
         self.found = found
+        self._forget_built()
         if not was_there:
             self._made |= {found.site_file, found.mapping_file, found.issue_file}
         self._memory.keep(self._drafts)

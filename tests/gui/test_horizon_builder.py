@@ -28,7 +28,7 @@ def opened(app, tmp_path):
 def drive(monkeypatch, act):
     def run(dialog):
         dialog.show()
-        act(dialog)
+        act(dialog.form)
         dialog.done(0)
 
     monkeypatch.setattr(HorizonBuilder, "exec", run)

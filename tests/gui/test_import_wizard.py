@@ -119,6 +119,97 @@ def test_a_log_of_lower_limits_is_read_and_said_so(qtbot, tmp_path):
     assert wizard.found.site.horizons["base of Q"].xyz[:, 2].tolist() == [890.25 - 2 * i for i in range(8)]
 
 
+def logged(qtbot, folder):
+    """A wizard that has read collars and logs of eight holes, at its list of horizons and problems."""
+    (folder / "钻孔.csv").write_text(COLLAR, encoding="utf-8")
+    (folder / "地层.csv").write_text(LOG, encoding="utf-8")
+    wizard = opened(qtbot, folder, folder / "钻孔.csv", folder / "地层.csv")
+    assert not wizard.build.isVisible(), "nothing is read yet"
+    press(qtbot, wizard, wizard.go)
+    return wizard
+
+
+def test_horizons_are_built_from_codes_with_their_picks_in_3d_and_can_be_taken_back(qtbot, tmp_path):
+    wizard = logged(qtbot, tmp_path)
+    press(qtbot, wizard, wizard.build)
+    page = wizard.horizons
+    form, view = page.form, page.view
+
+    def points():
+        return {layer.horizon for layer in view.layers if layer.kind == "points"}
+
+    assert view.isVisible()
+    assert "holes" in view.layers
+    assert not page.back.isEnabled()
+    assert wizard.go.isEnabled(), "the page can be skipped"
+    form.check("T2")
+    form.limit.setCurrentIndex(form.limit.findData("top"))
+    assert points() == {"Preview"}
+    assert len(view.contents.points["Preview"]) == 8
+    form.add.click()
+    assert points() == {"top of T2"}
+    form.check("T2")
+    assert points() == {"top of T2", "Preview"}
+    form.name.setText("floor")
+    form.name.textEdited.emit("floor")
+    form.add.click()
+    assert "top of T2, floor" in page.words.text()
+    press(qtbot, wizard, page.back)
+    assert points() == {"top of T2"}
+    assert "floor" not in form.place.order
+    press(qtbot, wizard, wizard.back)
+    press(qtbot, wizard, wizard.build)
+    assert [one.name for one in wizard.built] == ["top of T2"], "it is kept while the problems are looked at"
+    with qtbot.waitSignal(wizard.accepted):
+        press(qtbot, wizard, wizard.go)
+    (built,) = wizard.built
+    assert set(built.order) == {"base of Q", "top of T2"}
+
+
+def test_what_was_built_is_forgotten_when_the_files_are_read_again(qtbot, tmp_path):
+    wizard = logged(qtbot, tmp_path)
+    press(qtbot, wizard, wizard.build)
+    wizard.horizons.form.check("Q")
+    wizard.horizons.form.limit.setCurrentIndex(wizard.horizons.form.limit.findData("top"))
+    wizard.horizons.form.add.click()
+    for _ in range(2):
+        press(qtbot, wizard, wizard.back)
+    press(qtbot, wizard, wizard.go)
+    assert wizard.pages.currentIndex() == 1
+    assert not wizard.built
+
+
+def test_horizons_of_the_wizard_are_steps_that_can_be_undone(app, tmp_path, monkeypatch):
+    def act(wizard):
+        wizard.show()
+        app.qtbot.waitUntil(lambda: not wizard.running, timeout=30_000)
+        press(app.qtbot, wizard, wizard.go)
+        press(app.qtbot, wizard, wizard.build)
+        form = wizard.horizons.form
+        for code, limit, name in (("T2", "top", "rock"), ("Q", "base", "soil")):
+            form.check(code)
+            form.limit.setCurrentIndex(form.limit.findData(limit))
+            form.name.setText(name)
+            form.name.textEdited.emit(name)
+            form.add.click()
+        press(app.qtbot, wizard, wizard.go)
+        return wizard.result()
+
+    monkeypatch.setattr(ImportWizard, "exec", act)
+    (tmp_path / "钻孔.csv").write_text(COLLAR, encoding="utf-8")
+    (tmp_path / "地层.csv").write_text(LOG, encoding="utf-8")
+    app.window.files.import_files([tmp_path / "钻孔.csv", tmp_path / "地层.csv"])
+    app.idle()
+    document, names = app.document, {"rock", "soil"}
+    assert names < set(document.horizons)
+    assert app.window.session.stack.count() == 2
+    for _ in range(2):
+        app.window.menus.undo.trigger()
+        app.idle()
+    assert not names & set(document.horizons)
+    assert document.horizons
+
+
 def test_several_columns_are_horizons(qtbot, tmp_path):
     rows = "".join(f"W{i},{i},{2 * i},50,{i + 10},{i + 20}\n" for i in range(1, 5))
     (tmp_path / "wells.csv").write_text("well,x,y,collar,T1,T2\n" + rows.replace(",13,", ",?,"))

@@ -14,7 +14,6 @@ from PySide6.QtGui import QDesktopServices
 
 from geofit.cad.step import read_step
 from geofit.gui.dialogs.export_step import ExportDialog
-from geofit.gui.dialogs.horizon_builder import HorizonBuilder
 from geofit.gui.dialogs.report import ReportDialog
 from geofit.gui.dialogs.section_sheet import SectionSheetDialog
 from geofit.gui.wizard.import_wizard import ImportWizard
@@ -28,34 +27,35 @@ GROUPS = {COVER: ("OvB", "NC", "NR"), BASEMENT: ("gd", "gdp", "gdp1", "gdp2", "g
 
 
 def imported(qtbot, wizard):
-    """Take what the wizard guesses, look at what it lists, and open the site."""
+    """Take what the wizard guesses, look at what it lists, group codes to two horizons, and open the site."""
     wizard.show()
     qtbot.waitUntil(lambda: not wizard.running, timeout=60_000)
     assert wizard.go.isEnabled(), wizard.message.text()
     qtbot.mouseClick(wizard.go, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: wizard.pages.currentIndex() == 1 and not wizard.running, timeout=60_000)
     assert wizard.results.issues.rows.total > 0, "39 collars are repeated: nothing is dropped silently"
+    qtbot.mouseClick(wizard.build, Qt.MouseButton.LeftButton)
+    build(wizard.horizons.form)
+    assert [one.name for one in wizard.built] == [COVER, BASEMENT]
     qtbot.mouseClick(wizard.go, Qt.MouseButton.LeftButton)
     return wizard.result()
 
 
-def build(dialog):
+def build(form):
     """Group codes to two horizons; the second is the first contact from above, thin beds ignored."""
-    dialog.show()
-    dialog.check(*GROUPS[COVER])
-    dialog.name.setText(COVER)
-    dialog.name.textEdited.emit(COVER)
-    assert len(dialog.picks.points) > 50
-    dialog.add.click()
-    dialog.check(*GROUPS[BASEMENT])
-    dialog.limit.setCurrentIndex(dialog.limit.findData("top"))
-    dialog.occurrence.setCurrentIndex(dialog.occurrence.findData("first"))
-    dialog.thinner.setValue(3.0)
-    dialog.name.setText(BASEMENT)
-    dialog.name.textEdited.emit(BASEMENT)
-    assert len(dialog.picks.points) > 50
-    dialog.add.click()
-    dialog.done(0)
+    form.check(*GROUPS[COVER])
+    form.name.setText(COVER)
+    form.name.textEdited.emit(COVER)
+    assert len(form.picks.points) > 50
+    form.add.click()
+    form.check(*GROUPS[BASEMENT])
+    form.limit.setCurrentIndex(form.limit.findData("top"))
+    form.occurrence.setCurrentIndex(form.occurrence.findData("first"))
+    form.thinner.setValue(3.0)
+    form.name.setText(BASEMENT)
+    form.name.textEdited.emit(BASEMENT)
+    assert len(form.picks.points) > 50
+    form.add.click()
 
 
 def written(qtbot, dialog, path, words):
@@ -86,17 +86,12 @@ def test_copper_creek_from_tables_to_section_sheet_step_and_report(app, qtbot, t
     tables = tmp_path / "tables"
     shutil.copytree(FOLDER, tables, ignore=lambda _, names: [name for name in names if not name.endswith(".csv")])
 
-    # Import: every column is guessed; every hole that can be used is there.
+    # Import: every column is guessed; every hole that can be used is there; codes are grouped to two horizons.
     monkeypatch.setattr(ImportWizard, "exec", lambda wizard: imported(qtbot, wizard))
     window.files.import_files(sorted(tables.glob("*.csv")))
     app.idle()
     assert panels.centre.currentWidget() is panels.view
     assert len(document.site.holes) == 545
-
-    # Codes are grouped to two horizons.
-    monkeypatch.setattr(HorizonBuilder, "exec", build)
-    app.trigger("build_horizon")
-    app.idle()
     assert {COVER, BASEMENT} <= set(document.horizons)
 
     # Fit, leave the worst point out, fit again.

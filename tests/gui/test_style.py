@@ -11,6 +11,7 @@ from PySide6.QtWidgets import (
     QDialogButtonBox,
     QDockWidget,
     QDoubleSpinBox,
+    QLabel,
     QLineEdit,
     QMessageBox,
     QPushButton,
@@ -22,7 +23,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.gui.theme import apply_theme
+from geofit.gui.theme import THEMES, apply_theme
 
 
 @pytest.fixture(params=["light", "dark"])
@@ -112,3 +113,15 @@ def test_the_tab_in_front_is_marked_in_the_dark(qapp, qtbot):
         ]
         assert (accent in column) == marked
     apply_theme(qapp, "light")
+
+
+def test_a_theme_that_is_switched_while_the_window_is_open_reaches_every_widget(app):
+    start = app.window.panels.start
+    for theme in ("dark", "light", "dark"):
+        app.window.actions_.themes.actions()[THEMES.index(theme)].trigger()
+        app.qtbot.wait(20)
+        paper = app.window.palette().color(QPalette.ColorRole.Window).lightness()
+        for widget in (start.sample, start.open, start.new, *start.findChildren(QLabel)):
+            role = QPalette.ColorRole.ButtonText if isinstance(widget, QPushButton) else QPalette.ColorRole.WindowText
+            text = widget.palette().color(role).lightness()
+            assert abs(text - paper) > 60, f"{theme}: {widget.text()!r} can hardly be read"
