@@ -11,7 +11,7 @@ BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 INSTALL := $(PIP) install --quiet --constraint $(LOCK)
 
-.PHONY: demo gui report-demo test test-others test-windows lint real bench profile docs screenshots package wheel audit system-packages clean python
+.PHONY: demo gui report-demo test test-windows test-volumes test-files test-others lint real bench profile docs screenshots package wheel audit system-packages clean python
 
 demo: .venv/.installed
 	$(BIN)/geofit demo --out demo_out
@@ -24,17 +24,27 @@ gui: .venv/.installed
 	$(INSTALL) --editable '.[gui]'
 	$(BIN)/geofit-gui
 
-# Windows share nothing with the other tests but the processor: make -j2 test runs both side by side.
+# Four parts that share nothing but the processor, the longest first: make -j2 test runs two side by side.
+WINDOWS := tests/gui
+VOLUMES := tests/bodies tests/caves tests/implicit tests/medial tests/morphing tests/pores
+FILES := tests/cad tests/cli tests/io tests/project tests/report
+PARTS := test-windows test-volumes test-files test-others
 test: .venv/.installed-all
 	@bash tools/system_packages.sh missing || true
-	@$(MAKE) --keep-going test-others test-windows
-
-test-others: .venv/.installed-all
-	$(BIN)/python -m pytest --ignore=tests/gui
+	@$(MAKE) --keep-going $(PARTS)
 
 # Exit code 5: where no window can open, every test of them is skipped.
 test-windows: .venv/.installed-all
-	$(BIN)/python -m pytest tests/gui || [ $$? -eq 5 ]
+	$(BIN)/python -m pytest $(WINDOWS) || [ $$? -eq 5 ]
+
+test-volumes: .venv/.installed-all
+	$(BIN)/python -m pytest $(VOLUMES)
+
+test-files: .venv/.installed-all
+	$(BIN)/python -m pytest $(FILES)
+
+test-others: .venv/.installed-all
+	$(BIN)/python -m pytest $(addprefix --ignore=,$(WINDOWS) $(VOLUMES) $(FILES))
 
 audit: .venv/.installed-all
 	-@$(PIP) install --quiet pip-audit
