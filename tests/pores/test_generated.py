@@ -107,7 +107,7 @@ def test_a_ring_has_one_tunnel_and_its_network_closes():
 
 
 def test_a_helix_is_one_pore_and_has_pappus_volume():
-    angle = np.linspace(0, 4 * np.pi, 400)
+    angle = np.linspace(0, 4 * np.pi, 120)
     line = np.column_stack([32 + 18 * np.cos(angle), 32 + 18 * np.sin(angle), 14 + 36 * angle / (4 * np.pi)])
     pore = capsules((64, 64, 64), [(a, b, 6.0) for a, b in pairwise(line)])
     length = np.linalg.norm(np.diff(line, axis=0), axis=1).sum()
