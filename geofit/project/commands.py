@@ -206,7 +206,9 @@ class AdjustControlPoint(_ManualCommand):
     aside: tuple[float, float, float] = NOWHERE
 
     def __post_init__(self) -> None:
-        self.aside = tuple(self.aside)
+        # Of a journal it is a list.
+        x, y, z = self.aside
+        self.aside = (x, y, z)
 
     @property
     def text(self) -> Message:  # noqa: D102

@@ -66,6 +66,8 @@ class AdjustPanel(QWidget):
         scroll.setFrameShape(QFrame.Shape.NoFrame)
         scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        # What is in it is never cut off at the right: there is no bar to reach it by.
+        scroll.setMinimumWidth(page.minimumSizeHint().width())
         self.pages = Placeholder(scroll)
         self.setLayout(self.pages)
         self._pause = QTimer(self, singleShot=True, interval=PAUSE)

@@ -23,7 +23,7 @@ from PySide6.QtWidgets import (
 from geofit.data.errors import GeofitError
 from geofit.fitting.edit import acted_on, support
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.lengths import in_lengths
+from geofit.gui.lengths import in_lengths, shown_coordinate, shown_length
 from geofit.gui.panels.weight import WeightBox
 from geofit.gui.translate import translated
 from geofit.splines.patch import Patch
@@ -52,7 +52,7 @@ class ControlPointPage(QWidget):
         self.held = False
         self.patch, self.i, self.j = QComboBox(), QSpinBox(), QSpinBox()
         self.dz, self.z = QDoubleSpinBox(), QDoubleSpinBox()
-        self.sideways = (QDoubleSpinBox(), QDoubleSpinBox())
+        self.sideways, self.directions = (QDoubleSpinBox(), QDoubleSpinBox()), (QLabel(), QLabel())
         self.weight, self.about = WeightBox(), QLabel()
         self.steps = [QPushButton(f"{step:+g}".replace("-", "−")) for step in STEPS]
         self._set_up_boxes()
@@ -63,8 +63,8 @@ class ControlPointPage(QWidget):
         for box in (self.i, self.j):
             box.valueChanged.connect(lambda _: self._choose())
         self.dz.valueChanged.connect(self._follow_move)
-        for box in self.sideways:
-            box.valueChanged.connect(lambda _: self._follow_move(self.dz.value()))
+        for side in self.sideways:
+            side.valueChanged.connect(lambda _: self._follow_move(self.dz.value()))
         self.z.valueChanged.connect(self._follow_elevation)
 
     @property
@@ -132,12 +132,8 @@ class ControlPointPage(QWidget):
         for index, name in ((self.i, self.tr("Row")), (self.j, self.tr("Column"))):
             index.setAccessibleName(name)
             index.setMinimumWidth(44)
-        for box, most, name in (
-            (self.dz, 1000.0, self.tr("Move by")),
-            (self.z, 12000.0, self.tr("Elevation")),
-            (self.sideways[0], 1000.0, self.tr("Aside, first direction")),
-            (self.sideways[1], 1000.0, self.tr("Aside, second direction")),
-        ):
+        named = ((self.dz, 1000.0, self.tr("Move by")), (self.z, 12000.0, self.tr("Elevation")))
+        for box, most, name in (*named, *((box, 1000.0, "") for box in self.sideways)):
             box.setRange(-most, most)
             box.setDecimals(3)
             box.setSingleStep(0.1)
@@ -168,13 +164,11 @@ class ControlPointPage(QWidget):
         form.addRow(self.tr("Patch"), self.patch)
         form.addRow(self.tr("Row"), index)
         form.addRow(self.tr("Move by"), self.dz)
-        aside = QHBoxLayout()
-        aside.setSpacing(4)
-        for box in self.sideways:
-            aside.addWidget(box, 1)
         form.addRow(steps)
         form.addRow(self.tr("Elevation"), self.z)
-        form.addRow(self.tr("Aside"), aside)
+        for label, box in zip(self.directions, self.sideways, strict=True):
+            label.setBuddy(box)
+            form.addRow(label, box)
         form.addRow(self.tr("Weight"), self.weight)
         page = QVBoxLayout(self)
         page.setContentsMargins(8, 8, 8, 8)
@@ -220,7 +214,9 @@ class ControlPointPage(QWidget):
             _put(box, 0.0)
         _put(self.z, float(z))
         self._name_ways()
-        words = self.tr("At ({x:.1f}, {y:.1f}, {z:.2f})").format(x=x, y=y, z=z)
+        words = self.tr("At ({x:.1f}, {y:.1f}, {z:.2f})").format(
+            x=shown_coordinate(x), y=shown_coordinate(y), z=shown_length(z)
+        )
         try:
             reach, self.held = self._reach()
             words += "\n" + reach
@@ -237,9 +233,10 @@ class ControlPointPage(QWidget):
         """Say where the moves aside go: over the map, or in the plane of a steep surface."""
         over = bool(np.array_equal(self._ways(), np.eye(3)))
         names = (self.tr("East"), self.tr("North")) if over else (self.tr("Along strike"), self.tr("Up dip"))
-        for box, name in zip(self.sideways, names, strict=True):
-            box.setPrefix(f"{name[0]} " if over else "")
-            box.setToolTip(name)
+        for label, box, name in zip(self.directions, self.sideways, names, strict=True):
+            label.setText(name)
+            box.setAccessibleName(name)
+            box.setToolTip(self.tr("Move aside; the surface is then a height field no longer."))
 
     def _reach(self) -> tuple[str, bool]:
         """Return what a move would change, and whether exact points forbid it."""
