@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QLabel, QMainWindow, QProgressBar, QToolButton
 
 from geofit.gui.activity import Activity
 from geofit.gui.icons import palette_icon
-from geofit.gui.lengths import length_mark, shown_length
+from geofit.gui.lengths import coordinate_mark, length_mark, shown_coordinate, shown_length
 from geofit.gui.panel_bar import PanelBar
 from geofit.gui.translate import translated
 
@@ -65,9 +65,11 @@ class ActivityBar:
         if math.isnan(x) or math.isnan(y):
             self.place.clear()
             return
-        x, y, z = (shown_length(value) for value in (x, y, z))
-        height = "" if math.isnan(z) else f"   Z {z:.2f}"
-        self.place.setText(f"E {x:.2f}   N {y:.2f}{height} {length_mark()}")
+        x, y, z = shown_coordinate(x), shown_coordinate(y), shown_length(z)
+        height = "" if math.isnan(z) else f"   Z {z:.2f} {length_mark()}"
+        # One mark at the end is enough where all three have the same unit.
+        mark = "" if height and coordinate_mark() == length_mark() else f" {coordinate_mark()}"
+        self.place.setText(f"E {x:.2f}   N {y:.2f}{mark}{height}")
 
     def _begin(self, title: str) -> None:
         self._title = title

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from PySide6.QtCore import QObject, Signal
 
 from geofit.data.accuracy import Accuracy
@@ -45,13 +47,14 @@ class Adjusting(QObject):
         self._document, self._fitting, self._panel, self._view = document, fitting, panel, view
         self._trial: Task | None = None
         self._preview: MovePreview | None = None
-        panel.adjust_wanted.connect(lambda patch, i, j, dz: self._try(Move(patch, i, j, dz)))
+        panel.adjust_wanted.connect(lambda *move: self._try(Move(*move)))
         panel.move_wanted.connect(lambda index, share: self._try(MoveToPointEdit(index, share)))
         panel.weigh_wanted.connect(lambda patch, i, j, weight: self._try(Weigh(patch, i, j, weight)))
         panel.control_chosen.connect(lambda *_: self._choose())
         panel.control_moved.connect(self._follow)
+        view.control_picked.connect(lambda *_: self._hint())
         view.control_picked.connect(lambda *_: self._choose())
-        view.control_dragged.connect(panel.control.dz.setValue)
+        view.control_dragged.connect(panel.control.put)
         view.control_dropped.connect(panel.apply)
         view.control_refused.connect(self.reported)
         activity.ended.connect(self._give_up)
@@ -82,16 +85,24 @@ class Adjusting(QObject):
         except GeofitError as error:
             reason = translated(str(error))
         self._view.control_move.show(name, self._preview, reason)
-        if dz := self._panel.control.dz.value():
-            self._follow(dz)
+        if self._panel.control.ready:
+            self._follow()
 
-    def _follow(self, dz: float) -> None:
+    def _hint(self) -> None:
+        """Say how the control point is dragged."""
+        if self._preview is not None:
+            self.reported.emit(
+                self.tr("Drag: in the plane of the view. Shift: along the normal. X, Y, Z: one axis. Figures: metres.")
+            )
+
+    def _follow(self) -> None:
         """Show the surface and its figures while the control point moves."""
-        preview = self._preview
+        preview, control = self._preview, self._panel.control
         if preview is None or preview.surface.accuracy is None or self._view.control_move.waits:
             return
-        before, after = preview.surface.accuracy, preview.effect(dz)
-        if dz:
+        dz, aside = control.dz.value(), control.aside
+        before, after = preview.surface.accuracy, preview.effect(dz, aside)
+        if control.ready:
             self._panel.show_move(before, after)
         figures = self.tr("Δz {dz} m\nσ {sigma} → {new_sigma} m · max |d| {worst} → {new_worst} m").format(
             dz=f"{dz:+.2f}".replace("-", "−"),
@@ -100,7 +111,11 @@ class Adjusting(QObject):
             worst=metres(before.max_abs),
             new_worst=metres(after.max_abs),
         )
-        self._view.control_move.move(dz, in_lengths(figures) if dz else "")
+        if any(aside):
+            east, north, up = (f"{value:+.2f} m".replace("-", "−") for value in aside)
+            words = self.tr("aside E {east}, N {north}, Z {up}").format(east=east, north=north, up=up)
+            figures = f"{words}\n{figures}"
+        self._view.control_move.move(preview.vector(dz, aside), in_lengths(figures) if control.ready else "")
 
     def _give_up(self) -> None:
         """Put the control point back where its move was refused, stopped or failed."""
@@ -108,13 +123,13 @@ class Adjusting(QObject):
             name = self._document.selection.horizon
             if name is not None and self._document.surface(name) is self._preview.surface:
                 self._view.control_move.waits = False
-                self._panel.control.dz.setValue(0.0)
+                self._panel.control.put_back()
 
-    def _adjust(self, patch: str, i: int, j: int, dz: float) -> None:
+    def _adjust(self, *move: Any) -> None:
         self._stop()
         self._view.control_move.waits = self._preview is not None
         if self._document.selection.horizon is not None:
-            self._fitting.adjust(self._document.selection.horizon, patch, i, j, dz)
+            self._fitting.adjust(self._document.selection.horizon, Move(*move))
 
     def _weigh(self, patch: str, i: int, j: int, weight: float) -> None:
         self._stop()

@@ -12,10 +12,11 @@ from typing import cast
 
 from PySide6.QtCore import QObject, QStandardPaths, Qt, QTimer
 
+from geofit.data.lengths import LengthUnit
 from geofit.data.messages import message
 from geofit.gui.icons import application_icon
 from geofit.gui.language import apply_language
-from geofit.gui.lengths import LengthUnit, show_lengths_in
+from geofit.gui.lengths import show_lengths_in
 from geofit.gui.main_window import MainWindow
 from geofit.gui.panels.log import qt_to_logging
 from geofit.gui.preferences import Preferences

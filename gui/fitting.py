@@ -31,7 +31,7 @@ from geofit.project.commands import (
     SplitAtFaults,
 )
 from geofit.project.fault_blocks import SplitHorizon, cuts_measured, split_at_faults
-from geofit.project.provenance import Corners, DocumentError, Provenance, Row
+from geofit.project.provenance import Corners, DocumentError, Move, Provenance, Row
 from geofit.site.throw import FaultCut
 
 __all__ = ["Fitting"]
@@ -142,9 +142,9 @@ class Fitting(QObject):
         title = self.tr("Examine {name} away from its data").format(name=name)
         self._activity.prepare(title, lambda: self._examine_work(name), on_done=self._examined, in_process=True)
 
-    def adjust(self, name: str, patch: str, i: int, j: int, dz: float) -> None:
-        """Raise a control point by ``dz`` metres."""
-        self._edit(AdjustControlPoint(name, patch, i, j, dz))
+    def adjust(self, name: str, move: Move) -> None:
+        """Move a control point."""
+        self._edit(AdjustControlPoint(name, move.patch, move.i, move.j, move.dz, move.aside))
 
     def weigh(self, name: str, patch: str, i: int, j: int, weight: float) -> None:
         """Give a control point another weight."""

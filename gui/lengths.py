@@ -1,31 +1,31 @@
 """The unit in which lengths are shown: metres, or feet for those who think in them. All data stay in metres.
 
 What is shown goes through one of these functions on its way to the screen: finished texts (:func:`in_lengths`), titles
-of columns and axes (:func:`in_title`), numbers (:func:`shown_length`). Fields in which lengths are entered, files and
-reports are in metres, and say so; areas and volumes are always square and cubic metres.
+of columns and axes (:func:`in_title`), numbers (:func:`shown_length`). Section sheets and plans are drawn in it, too.
+Other fields in which lengths are entered, files and reports are in metres, and say so; areas and volumes are always
+square and cubic metres.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from typing import Literal, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = [
-    "LENGTH_UNITS", "LengthUnit", "in_lengths", "in_title", "length_mark", "metres_shown",
-    "show_lengths_in", "shown_length",
-]  # fmt: skip
+from geofit.data.lengths import LENGTH_UNITS, LengthUnit, unit_mark
 
-LengthUnit = Literal["m", "ft", "ft-us"]
-#: Metres of one unit.
-LENGTH_UNITS: dict[LengthUnit, float] = {"m": 1.0, "ft": 0.3048, "ft-us": 1200.0 / 3937.0}
+__all__ = [
+    "coordinate_mark", "coordinate_unit", "count_coordinates_in", "in_lengths", "in_title", "length_mark",
+    "length_unit", "metres_shown", "show_lengths_in", "shown_coordinate", "shown_length",
+]  # fmt: skip
 
 Number = TypeVar("Number", float, NDArray[np.float64])
 
 _unit: LengthUnit = "m"
+_grid: LengthUnit | None = None
 
 _GAP = "[  \N{NARROW NO-BREAK SPACE}\N{THIN SPACE}]"
 _NUMBER = rf"[+\-−]?\d+(?:{_GAP}\d{{3}})*(?:\.\d+)?(?:e[+\-]?\d+)?"
@@ -42,9 +42,36 @@ def show_lengths_in(unit: LengthUnit) -> None:
     _unit = unit
 
 
+def count_coordinates_in(unit: LengthUnit | None) -> None:
+    """Show eastings and northings in feet where the site's own grid counts in them; else as all lengths."""
+    global _grid
+    _grid = None if unit == "m" else unit
+
+
+def coordinate_unit() -> LengthUnit:
+    """Return the unit of eastings and northings."""
+    return _grid or _unit
+
+
+def coordinate_mark() -> str:
+    """Return how the unit of eastings and northings is written."""
+    return unit_mark(coordinate_unit())
+
+
+def shown_coordinate(metres: Number) -> Number:
+    """Return eastings or northings in the unit that is shown."""
+    unit = coordinate_unit()
+    return metres if unit == "m" else metres / LENGTH_UNITS[unit]
+
+
+def length_unit() -> LengthUnit:
+    """Return the unit that is shown."""
+    return _unit
+
+
 def length_mark() -> str:
     """Return how the unit is written: "m" or "ft"."""
-    return "m" if _unit == "m" else "ft"
+    return unit_mark(_unit)
 
 
 def metres_shown() -> float:
@@ -57,9 +84,10 @@ def shown_length(metres: Number) -> Number:
     return metres if _unit == "m" else metres / LENGTH_UNITS[_unit]
 
 
-def in_title(title: str) -> str:
-    """Return the title of a column or an axis of lengths, which ends in ", m"."""
-    return title if _unit == "m" else _TITLE.sub(rf"\1{length_mark()}", title)
+def in_title(title: str, *, coordinate: bool = False) -> str:
+    """Return the title of a column or an axis of lengths, which ends in ", m"; ``coordinate``: easting or northing."""
+    mark = coordinate_mark() if coordinate else length_mark()
+    return title if mark == "m" else _TITLE.sub(rf"\1{mark}", title)
 
 
 def in_lengths(text: str) -> str:
@@ -67,12 +95,19 @@ def in_lengths(text: str) -> str:
 
     Numbers keep their decimals, fractions three significant digits at least: nothing that could be read is lost.
     """
-    return text if _unit == "m" else _MEASURE.sub(_converted, _PLACE.sub(_place, text))
+    if coordinate_unit() != "m":
+        text = _PLACE.sub(_place, text)
+    return text if _unit == "m" else _MEASURE.sub(_converted, text)
 
 
 def _place(found: re.Match[str]) -> str:
-    per = LENGTH_UNITS[_unit]
-    return re.sub(_NUMBER, lambda number: _number(number.group(), per), found.group()[:-1]) + length_mark()
+    east, north, up = re.findall(_NUMBER, found.group())
+    heads = re.split(_NUMBER, found.group())
+    east, north = (_number(number, LENGTH_UNITS[coordinate_unit()]) for number in (east, north))
+    if _unit != "m":
+        return f"{heads[0]}{east}{heads[1]}{north}{heads[2]}{_number(up, LENGTH_UNITS[_unit])}{heads[3][:-1]}ft"
+    # Its elevation keeps the metres that stand behind it.
+    return f"{heads[0]}{east}{heads[1]}{north} ft{heads[2]}{up}{heads[3]}"
 
 
 def _converted(found: re.Match[str]) -> str:

@@ -7,8 +7,8 @@ from typing import cast
 
 from PySide6.QtCore import QByteArray, QSettings
 
+from geofit.data.lengths import LENGTH_UNITS, LengthUnit
 from geofit.gui.language import LANGUAGES, system_language
-from geofit.gui.lengths import LENGTH_UNITS, LengthUnit
 from geofit.gui.theme import THEMES, Theme
 from geofit.gui.view3d.mouse import SCHEMES, Scheme
 

@@ -13,7 +13,9 @@ from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.data.site import Site
 from geofit.data.verdict import verdict_of
+from geofit.gui.lengths import count_coordinates_in
 from geofit.gui.translate import shown_error, translated
+from geofit.io.crs import unit_of_grid
 from geofit.project.commands import ChangeData, Command, SetSurface
 from geofit.project.document import Document
 from geofit.project.journal import SessionJournal, Unfinished
@@ -50,6 +52,7 @@ class Session(QObject):
         """Begin with a site; what was worked on before is over. ``data`` are earlier data that the state names."""
         self.end()
         self.stack.clear()
+        count_coordinates_in(unit_of_grid(site.crs))
         self.document.open(site, site_file, state, project_file, data)
         try:
             self._journal = SessionJournal(self.folder, self.document.state, site_file, project_file)

@@ -9,13 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError, MissingDependencyError
+from geofit.data.lengths import LENGTH_UNITS, LengthUnit
 from geofit.data.messages import message
 from geofit.io.extra import need
 
-__all__ = ["WGS84", "is_code", "project_places", "refuse_degrees"]
+__all__ = ["WGS84", "is_code", "project_places", "refuse_degrees", "unit_of_grid"]
 
 Floats = NDArray[np.float64]
 
+#: Units that differ by a smaller share are one: the two feet differ by two in a million.
+SAME = 1e-8
 #: The system of longitudes and latitudes that name no other one.
 WGS84 = "EPSG:4326"
 
@@ -66,6 +69,28 @@ def project_places(
     lost = ~(np.isfinite(east) & np.isfinite(north))
     east[lost] = north[lost] = np.nan
     return east, north
+
+
+def unit_of_grid(label: str | None) -> LengthUnit | None:
+    """Return the unit in which a projected system counts, "m" or a foot; None where that is not known here.
+
+    Examples
+    --------
+    >>> unit_of_grid("local grid") is None
+    True
+    """
+    if not is_code(label):
+        return None
+    try:
+        system = _system(
+            need("pyproj", "gis", message("io.need-projection", "Projecting {file}", file="")), label or "", ""
+        )
+    except (InputError, MissingDependencyError):
+        return None
+    if not system.is_projected:
+        return None
+    own = system.axis_info[0].unit_conversion_factor
+    return next((unit for unit, metres in LENGTH_UNITS.items() if abs(metres / own - 1) < SAME), None)
 
 
 def refuse_degrees(crs: str, file: str) -> None:

@@ -7,6 +7,7 @@ the control points that move is touched, and no change takes the surface off a p
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,7 @@ from geofit.data.errors import ExactnessError, FitError
 from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite, shown
 from geofit.fitting.assemble import NetPart, divide
+from geofit.fitting.edit_words import core_ruled, move_note, moved_aside, require_finite
 from geofit.fitting.model import Model
 from geofit.fitting.skin import minimum_norm_correction
 from geofit.geometry.projection import project
@@ -39,7 +41,9 @@ TANGENT_ROWS = 2
 BEYOND = 2
 
 
-def adjust(surface: HorizonFit, patch: str, i: int, j: int, dz: float) -> HorizonFit:
+def adjust(
+    surface: HorizonFit, patch: str, i: int, j: int, dz: float, aside: Sequence[float] = (0.0, 0.0, 0.0)
+) -> HorizonFit:
     """Move one control point, and the check with it.
 
     Parameters
@@ -53,6 +57,8 @@ def adjust(surface: HorizonFit, patch: str, i: int, j: int, dz: float) -> Horizo
     dz : float
         How far it moves along the frame's height, metres: upwards over the map and on a folded surface, along the
         normal of the best plane on a steep one.
+    aside : (3,) sequence of float
+        A further move in map coordinates, metres; the surface is then a height field no longer.
 
     Returns
     -------
@@ -71,22 +77,13 @@ def adjust(surface: HorizonFit, patch: str, i: int, j: int, dz: float) -> Horizo
     Li, Miao, Liu, Wang (2011), sec. 3.3. Only the control point's own knot spans change.
     """
     model = _model(surface)
-    _finite(dz, "dz")
+    require_finite(dz, "dz")
+    for value in aside:
+        require_finite(value, "aside")
     index, share = movable(surface, patch, i, j)
-    coefficients = model.net.coefficients.copy()
-    coefficients[(index, 2) if coefficients.ndim == 2 else index] += dz / share
-    return _changed(
-        surface,
-        model.with_net(replace(model.net, coefficients=coefficients)),
-        message(
-            "fitting.control-point-moved-note",
-            "manual edit: control point ({i}, {j}) of patch '{patch}' moved by {dz:+.3g} m",
-            i=i,
-            j=j,
-            patch=patch,
-            dz=dz,
-        ),
-    )
+    by = model.problem.parametrization.frame.axes @ np.asarray(aside, float)
+    by[2] += dz
+    return _changed(surface, model.moved(index, by / share), move_note(patch, i, j, dz, aside))
 
 
 def move_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> HorizonFit:
@@ -119,7 +116,7 @@ def move_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
     Wang, 2011, sec. 3.3).
     """
     model = _model(surface)
-    _finite(share, "share")
+    require_finite(share, "share")
     place, value, name = _target(surface, model, point)
     net, given = model.net, model.problem
     row = net.space.matrix(place / net.unit)
@@ -132,7 +129,7 @@ def move_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
     acting[row.indices] = True
     _require_movable(model, acting)
     # Beside weights, and where the core is linear across its sections, other control points may not move.
-    tied = net.lines is not None or any(True for _ in _weighed(model))
+    tied = net.lines is not None or model.aside is not None or any(True for _ in _weighed(model))
     change = _moved_beside(csr_array(row), misfit, fixed, acting)
     wider = 0
     while change is None:
@@ -165,7 +162,9 @@ def move_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
 def _require_movable(model: Model, acting: NDArray[np.bool_]) -> None:
     """Refuse to move control points of a core that is linear across its sections, or next to weighted ones."""
     if model.net.lines is not None and model.net.frozen[acting].any():
-        raise _straight()
+        raise core_ruled()
+    if model.aside is not None and model.aside[acting].any():
+        raise moved_aside()
     if any(_touches(part, weights, acting, model) for part, weights in _weighed(model)):
         raise FitError(
             message(
@@ -283,7 +282,7 @@ def movable(surface: HorizonFit, patch: str, i: int, j: int) -> tuple[int, float
     index, share = _coefficient(model, _part(model, patch), i, j)
     _refuse_exact(surface, model, index, patch, i, j)
     if model.net.lines is not None and model.net.frozen[index]:
-        raise _straight()
+        raise core_ruled()
     return index, share
 
 
@@ -312,19 +311,6 @@ def _model(surface: HorizonFit) -> Model:
     return model
 
 
-def _finite(value: float, name: str) -> None:
-    if not is_finite(value) or abs(value) > LARGEST:
-        raise FitError(
-            message(
-                "fitting.value-not-finite",
-                "{name} is {value}; a finite number up to {most:.0e} is needed.",
-                name=name,
-                value=shown(value),
-                most=LARGEST,
-            )
-        )
-
-
 def _refuse_exact(surface: HorizonFit, model: Model, index: int, patch: str, i: int, j: int) -> None:
     """Refuse a control point that acts on points that are met exactly."""
     held = _acting(model, index) & _exact(model)
@@ -341,16 +327,6 @@ def _refuse_exact(surface: HorizonFit, model: Model, index: int, patch: str, i: 
                 names=_names(surface, held),
             )
         )
-
-
-def _straight() -> FitError:
-    return FitError(
-        message(
-            "fitting.core-ruled",
-            "The core is straight between its section curves, and its control points follow them. Change the "
-            "periphery, or fit with across='cubic'.",
-        )
-    )
 
 
 def _part(model: Model, patch: str) -> NetPart:

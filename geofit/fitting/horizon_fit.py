@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -154,9 +154,9 @@ class HorizonFit:
         """Return triangles within a tolerance (m), trimmed to where the surface ends."""
         return self.surface.triangulate(tolerance)
 
-    def adjust(self, patch: str, i: int, j: int, dz: float) -> HorizonFit:
+    def adjust(self, patch: str, i: int, j: int, dz: float, aside: Sequence[float] = (0.0, 0.0, 0.0)) -> HorizonFit:
         """Return the fit with one control point moved; see :func:`geofit.fitting.edit.adjust`."""
-        return edit.adjust(self, patch, i, j, dz)
+        return edit.adjust(self, patch, i, j, dz, aside)
 
     def move_to(self, point: int | ArrayLike, share: float = 1.0) -> HorizonFit:
         """Return the fit moved to one of its points, or to a place; see :func:`geofit.fitting.edit.move_to`."""

@@ -18,12 +18,16 @@ from geofit.fitting.net import Net, approximate_all, gather_points
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
+from geofit.splines.bspline import greville
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 
 __all__ = ["Model", "Problem"]
 
 Floats = NDArray[np.float64]
+
+#: A move aside that is shorter is rounding, metres.
+STILL = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,22 +76,47 @@ class Problem:
 class Model:
     """A problem with one control net for the whole surface, of which the patches are parts.
 
-    ``weights`` holds the weights of the control points of patches that were weighted manually, by name.
+    ``weights`` holds the weights of the control points of patches that were weighted manually, by name. ``aside``
+    (size, 2) is how far coefficients of a height field were moved along the frame's plane, metres; None: none was.
     """
 
     problem: Problem
     net: Net
     weights: Mapping[str, Floats] = field(default_factory=dict)
+    aside: Floats | None = None
 
     def with_net(self, net: Net) -> Model:
         """Return the same problem with another control net."""
         return replace(self, net=net)
 
+    def moved(self, index: int, by: Floats) -> Model:
+        """Return the model with one coefficient moved by (3,) metres along the frame's axes u, v and height."""
+        coefficients = self.net.coefficients.copy()
+        if coefficients.ndim == 2:
+            coefficients[index] += by
+            return self.with_net(replace(self.net, coefficients=coefficients))
+        coefficients[index] += by[2]
+        net = replace(self.net, coefficients=coefficients)
+        if np.abs(by[:2]).max() < STILL:
+            return self.with_net(net)
+        aside = np.zeros((len(coefficients), 2)) if self.aside is None else self.aside.copy()
+        aside[index] += by[:2]
+        return replace(self, net=net, aside=aside)
+
+    def control(self) -> Floats:
+        """Return what :func:`geofit.fitting.assemble.patches_of` cuts: heights, or (size, 3) coordinates."""
+        net = self.net
+        if self.aside is None:
+            return net.coefficients
+        u, v = (greville(knots, net.space.degree) * net.unit for knots in (net.space.knots_u, net.space.knots_v))
+        plane = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
+        return np.column_stack([plane + self.aside, net.coefficients])
+
     def patches(self) -> tuple[Patch, ...]:
         """Cut the surface into patches along the core's edges."""
         net, interpolated = self.net, self.problem.split.core is not None
         frame = self.problem.parametrization.frame
-        patches = patches_of(net.space, net.coefficients, net.core, frame, net.unit, net.lines, interpolated)
+        patches = patches_of(net.space, self.control(), net.core, frame, net.unit, net.lines, interpolated)
         return tuple(replace(patch, weights=self.weights.get(patch.name)) for patch in patches)
 
     def patch_surface(self) -> PatchSurface:

@@ -7,6 +7,7 @@ those of :func:`geofit.fitting.edit.adjust`, to rounding; the other checks wait 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -31,13 +32,15 @@ Bools = NDArray[np.bool_]
 
 #: Knot spans around those that change, in which a foot point may slide without leaving what is evaluated.
 MARGIN = 2
+#: No move aside.
+STILL = (0.0, 0.0, 0.0)
 #: Metres within which two distances are one.
 ONE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class MoveEffect:
-    """The deviations after a move of ``dz`` metres.
+    """The deviations after a move of ``dz`` metres along the height, and of ``aside`` in map coordinates.
 
     ``residuals`` (n,) signed orthogonal distances, metres, of which ``changed`` differ from before; ``sigma`` (eq. 3)
     and ``max_abs`` in metres; ``beyond`` points lie farther than the control error.
@@ -49,6 +52,7 @@ class MoveEffect:
     max_abs: float
     beyond: int
     changed: int
+    aside: Sequence[float] = STILL
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,13 +85,18 @@ class MovePreview:
     way: Floats
     support: tuple[float, float, float, float]
 
-    def effect(self, dz: float) -> MoveEffect:
-        """Return the deviations with the control point moved by ``dz`` metres."""
+    def effect(self, dz: float, aside: Sequence[float] = STILL) -> MoveEffect:
+        """Return the deviations with the control point moved by ``dz`` metres, and aside in map coordinates."""
         accuracy = self.surface.accuracy
         assert accuracy is not None
-        residuals, rows = accuracy.residuals.copy(), self._near[0]
-        if len(rows):
-            residuals[rows] = self._distances(dz, *self._near)
+        residuals = accuracy.residuals.copy()
+        if any(aside):
+            rows = self._within_reach(float(np.linalg.norm(aside)))
+            residuals[rows] = self._project(self._whole(dz, aside), rows).distance
+        else:
+            rows = self._near[0]
+            if len(rows):
+                residuals[rows] = self._distances(dz, *self._near)
         size = np.abs(residuals)
         return MoveEffect(
             dz=dz,
@@ -96,7 +105,12 @@ class MovePreview:
             max_abs=float(size.max(initial=0.0)),
             beyond=int((size > accuracy.epsilon).sum()),
             changed=int((np.abs(residuals[rows] - accuracy.residuals[rows]) > ONE).sum()),
+            aside=aside,
         )
+
+    def vector(self, dz: float, aside: Sequence[float] = STILL) -> Floats:
+        """Return the move (3,) in map coordinates."""
+        return np.asarray(dz * self.way + np.asarray(aside, float))
 
     def shares(self, xyz: ArrayLike) -> Floats:
         """Return by how many metres the surface at (n, 3) map coordinates moves for a move of one metre, (n,)."""
@@ -105,7 +119,7 @@ class MovePreview:
     def parameters(self, xyz: ArrayLike) -> Floats:
         """Return the parameters (n, 2) of places on the surface, (n, 3) map coordinates, metres."""
         parametrization, xyz = self._model.problem.parametrization, np.asarray(xyz, float).reshape(-1, 3)
-        if not parametrization.parametric:
+        if not parametrization.parametric and self._model.aside is None:
             return parametrization.frame.to_local(xyz)[:, :2]
         found = project(self.surface.patches, xyz - self.surface.origin)
         return np.column_stack([found.u, found.v])
@@ -123,14 +137,14 @@ class MovePreview:
             for one in self.surface.patches
         )
 
-    def rim(self, dz: float, steps: int = 24) -> Floats:
+    def rim(self, dz: float, aside: Sequence[float] = STILL, steps: int = 24) -> Floats:
         """Return the border of what moves, a closed line (4 * steps + 1, 3) in map coordinates, metres."""
         u0, u1, v0, v1 = self._within(self.support)
         along = np.linspace(0.0, 1.0, steps + 1)[:-1]
         u = np.concatenate([u0 + (u1 - u0) * along, np.full(steps, u1), u1 - (u1 - u0) * along, np.full(steps, u0)])
         v = np.concatenate([np.full(steps, v0), v0 + (v1 - v0) * along, np.full(steps, v1), v1 - (v1 - v0) * along])
         plane = np.column_stack([np.append(u, u0), np.append(v, v0)])
-        return self._places(plane) + dz * self._basis(plane)[:, None] * self.way
+        return self._places(plane) + self._basis(plane)[:, None] * self.vector(dz, aside)
 
     @property
     def _model(self) -> Model:
@@ -141,6 +155,8 @@ class MovePreview:
         """Return the places (n, 3) on the unmoved surface at (n, 2) parameters, map coordinates."""
         net, frame = self._model.net, self._model.problem.parametrization.frame
         value = net.space.matrix(plane / net.unit) @ net.coefficients
+        if self._model.aside is not None:
+            plane = plane + net.space.matrix(plane / net.unit) @ self._model.aside
         local = value if value.ndim == 2 else np.column_stack([plane, value])
         return np.asarray(frame.turn_back(local) + self.surface.origin)
 
@@ -171,6 +187,8 @@ class MovePreview:
         model, net = self._model, self._model.net
         if model.weights or net.lines is not None or model.problem.parametrization.parametric:
             return None
+        if model.aside is not None:
+            return None
         space, frame, border = net.space, model.problem.parametrization.frame, []
         for knots, a in zip((space.knots_u, space.knots_v), divmod(self.index, space.shape[1]), strict=True):
             breaks = np.unique(knots)
@@ -178,7 +196,7 @@ class MovePreview:
             border += [float(breaks[max(first - MARGIN, 0)]), float(breaks[min(last + MARGIN, len(breaks) - 1)])]
         area = (border[0], border[1], border[2], border[3])
         still, other = (
-            patches_of(space, c, area, frame, net.unit)[0] for c in (net.coefficients, self._coefficients(1.0))
+            patches_of(space, c, area, frame, net.unit)[0] for c in (net.coefficients, self._moved(1.0).control())
         )
         return still, other.control - still.control
 
@@ -204,6 +222,15 @@ class MovePreview:
         here = np.abs(self._project((patch,), rows).distance) <= np.abs(d[rows]) + ONE
         return rows, here, np.maximum(room, 0.0)
 
+    def _within_reach(self, aside: float) -> Ints:
+        """Return which points may have their foot on what moves when it is moved aside by so many metres, (k,)."""
+        if self._region is None:
+            return np.arange(len(self._before))
+        u0, u1, v0, v1 = self._region[0].domain
+        place = self._model.problem.parametrization.frame.to_local(self.surface.points.xyz)[:, :2]
+        off = np.maximum(np.maximum([u0, v0] - place, place - [u1, v1]), 0.0)
+        return np.flatnonzero(np.linalg.norm(off, axis=1) <= np.abs(self._before) + aside + ONE)
+
     def _distances(self, dz: float, rows: Ints, here: Bools, room: Floats) -> Floats:
         """Return the signed distances of the points of :meth:`_near` after a move."""
         if self._region is None:
@@ -223,14 +250,14 @@ class MovePreview:
         assert self.surface.accuracy is not None
         return self.surface.accuracy.residuals
 
-    def _coefficients(self, dz: float) -> Floats:
-        coefficients = self._model.net.coefficients.copy()
-        coefficients[(self.index, 2) if coefficients.ndim == 2 else self.index] += dz / self.share
-        return coefficients
+    def _moved(self, dz: float, aside: Sequence[float] = STILL) -> Model:
+        by = self._model.problem.parametrization.frame.axes @ np.asarray(aside, float)
+        by[2] += dz
+        return self._model.moved(self.index, by / self.share)
 
-    def _whole(self, dz: float) -> tuple[Patch, ...]:
+    def _whole(self, dz: float, aside: Sequence[float] = STILL) -> tuple[Patch, ...]:
         """Return all patches after a move."""
-        return self._model.with_net(replace(self._model.net, coefficients=self._coefficients(dz))).patches()
+        return self._moved(dz, aside).patches()
 
     def _project(self, patches: tuple[Patch, ...], rows: Ints) -> Projection:
         if not len(rows):

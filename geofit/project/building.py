@@ -117,7 +117,7 @@ def edited(surface: HorizonFit, edit: ManualEdit, progress: Progress | None = No
 
     tell(progress, "manual edits", 0.0)
     if isinstance(edit, Move):
-        return adjust(surface, edit.patch, edit.i, edit.j, edit.dz)
+        return adjust(surface, edit.patch, edit.i, edit.j, edit.dz, edit.aside)
     if isinstance(edit, MoveToPointEdit):
         return move_to(surface, edit.index, edit.share)
     return weigh(surface, edit.patch, edit.i, edit.j, edit.weight)

@@ -19,6 +19,7 @@ from geofit.project.data_commands import ChangeData
 from geofit.project.fit_command import TakeFit
 from geofit.project.horizon_commands import MergeHorizons, RemoveHorizons, RenameHorizon
 from geofit.project.provenance import (
+    NOWHERE,
     DocumentError,
     ManualEdit,
     Move,
@@ -195,16 +196,30 @@ class _ManualCommand(Command):
 
 @dataclass
 class AdjustControlPoint(_ManualCommand):
-    """A control point raised or lowered manually, metres."""
+    """A control point raised or lowered manually, and moved aside in map coordinates, metres."""
 
     kind = "adjust"
     patch: str
     i: int
     j: int
     dz: float
+    aside: tuple[float, float, float] = NOWHERE
+
+    def __post_init__(self) -> None:
+        # Of a journal it is a list.
+        x, y, z = self.aside
+        self.aside = (x, y, z)
 
     @property
     def text(self) -> Message:  # noqa: D102
+        if any(self.aside):
+            x, y, z = self.aside
+            return message(
+                "project.step-move-control-point-aside",
+                "Move control point {i}, {j} of {patch} by {dz:+.3f} m and aside by ({x:+.2f}, {y:+.2f}, {z:+.2f}) m "
+                "({name})",
+                i=self.i, j=self.j, patch=self.patch, dz=self.dz, x=x, y=y, z=z, name=self.horizon,
+            )  # fmt: skip
         return message(
             "project.step-move-control-point", "Move control point {i}, {j} of {patch} by {dz:+.3f} m ({name})",
             i=self.i, j=self.j, patch=self.patch, dz=self.dz, name=self.horizon,
@@ -212,7 +227,7 @@ class AdjustControlPoint(_ManualCommand):
 
     @property
     def edit(self) -> ManualEdit:  # noqa: D102
-        return Move(self.patch, self.i, self.j, self.dz)
+        return Move(self.patch, self.i, self.j, self.dz, self.aside)
 
 
 @dataclass

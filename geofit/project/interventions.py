@@ -43,6 +43,20 @@ def _in_words(edit: ManualEdit | SeparationEdit) -> Message:
             others=tuple(edit.sequence),
             minimum=edit.minimum,
         )
+    if isinstance(edit, Move) and any(edit.aside):
+        x, y, z = edit.aside
+        return message(
+            "project.moved-aside",
+            "control point ({i}, {j}) of patch {patch} moved by {dz:+.3f} m and aside by ({x:+.3f}, {y:+.3f}, "
+            "{z:+.3f}) m",
+            i=edit.i,
+            j=edit.j,
+            patch=edit.patch,
+            dz=edit.dz,
+            x=x,
+            y=y,
+            z=z,
+        )
     if isinstance(edit, Move):
         return message(
             "project.moved",

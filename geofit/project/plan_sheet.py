@@ -51,7 +51,8 @@ def write_plan_sheet(
         If ``progress`` returned False.
     """
     results = [HorizonResult(surfaces[name], site) for name in order.horizons]
-    scale = plan_scale(results, order.paper, order.scale)
+    unit = order.block.unit
+    scale = plan_scale(results, order.paper, order.scale, unit)
     t, files = language_of(order.language), []
     for k, form in enumerate(order.forms):
         tell(progress, "drawing", k / len(order.forms))
@@ -59,9 +60,11 @@ def write_plan_sheet(
         if form == "dxf":
             from geofit.io.export.plan_dxf import write_plan_dxf
 
-            steps = {result.name: interval_of(result, order.interval) for result in results}
+            steps = {result.name: interval_of(result, order.interval, unit) for result in results}
             lines = {result.name: contours(result.surface.surface, steps[result.name]) for result in results}
-            write_plan_dxf(lines, steps, site, order.block.title, path)
+            # A drawing has one unit: where it is the foot, that of the grid.
+            drawn = unit if unit == "m" or order.block.grid is None else order.block.grid
+            write_plan_dxf(lines, steps, site, order.block.title, path, unit=drawn)
             files.append(path)
         elif form == "svg":
             files += write_plan_svg(results, order.block, path, interval=order.interval, paper=order.paper, scale=scale,

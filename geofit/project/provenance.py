@@ -38,6 +38,8 @@ __all__ = [
 ]
 
 
+#: No move, in map coordinates.
+NOWHERE = (0.0, 0.0, 0.0)
 #: Corners of a polygon in map coordinates, metres, not closed.
 Corners = tuple[tuple[float, float], ...]
 
@@ -68,12 +70,13 @@ class Row:
 
 @dataclass(frozen=True)
 class Move:
-    """A control point of a patch, raised by ``dz`` metres."""
+    """A control point of a patch, raised by ``dz`` metres and moved by ``aside``, map coordinates, metres."""
 
     patch: str
     i: int
     j: int
     dz: float
+    aside: tuple[float, float, float] = NOWHERE
 
 
 @dataclass(frozen=True)
@@ -375,11 +378,18 @@ def _edit_data(edit: ManualEdit | SeparationEdit) -> dict[str, Any]:
     if isinstance(edit, SeparationEdit):
         others = [other.to_data() for other in edit.others]
         return {"kind": "separate", "sequence": list(edit.sequence), "minimum": edit.minimum, "others": others}
-    return {"kind": next(kind for kind, made in _EDITS.items() if isinstance(edit, made)), **asdict(edit)}
+    values = asdict(edit)
+    if values.get("aside") == NOWHERE:
+        # As projects and journals had it before control points moved aside.
+        del values["aside"]
+    return {"kind": next(kind for kind, made in _EDITS.items() if isinstance(edit, made)), **values}
 
 
 def _edit_from(data: Mapping[str, Any]) -> ManualEdit | SeparationEdit:
     if data["kind"] == "separate":
         others = tuple(Provenance.from_data(other) for other in data["others"])
         return SeparationEdit(tuple(data["sequence"]), data["minimum"], others)
-    return _EDITS[data["kind"]](**{name: value for name, value in data.items() if name != "kind"})
+    values = {name: value for name, value in data.items() if name != "kind"}
+    if "aside" in values:
+        values["aside"] = tuple(values["aside"])
+    return _EDITS[data["kind"]](**values)

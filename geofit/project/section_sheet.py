@@ -121,13 +121,13 @@ def write_section_sheet(
         views.append(replace(found, bodies=tuple(trace for trace in traces if trace.rings)))
     tell(progress, "drawing", 0.8)
     files: list[Path] = []
-    scale = order.scale or fitting_scale(views, order.paper, order.exaggeration)
+    scale = order.scale or fitting_scale(views, order.paper, order.exaggeration, order.block.unit)
     for form in order.forms:
         path = order.path.with_name(f"{order.path.name}.{form}")
         if form == "dxf":
             from geofit.io.export.section_dxf import write_sheet_dxf
 
-            write_sheet_dxf(views, order.block.title, path, exaggeration=order.exaggeration)
+            write_sheet_dxf(views, order.block.title, path, exaggeration=order.exaggeration, unit=order.block.unit)
             files.append(path)
         elif form == "svg":
             files += write_sheet_svg(

@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.languages import EN, Language
+from geofit.data.lengths import LENGTH_UNITS, LengthUnit, unit_mark
 from geofit.report.accuracy_report import PlanSheet
 from geofit.report.furniture import north_arrow, scale_bar, scale_for, scale_text
+from geofit.report.length_axis import number_axis
 from geofit.report.result import HorizonResult
 from geofit.report.style import CORE, LINE, MUTED, PAPER, TEXT, drawing, kind_style
 from geofit.report.view import rims
@@ -33,15 +35,19 @@ COARSE = 0.5
 MM = 1 / 25.4
 
 
-def plan_sheet(result: HorizonResult) -> PlanSheet | None:
-    """Choose scale and interval of a contour plan; None for a folded surface, of which contours would cross."""
+def plan_sheet(result: HorizonResult, unit: LengthUnit = "m") -> PlanSheet | None:
+    """Choose scale and interval (metres, round in ``unit``) of a contour plan.
+
+    None for a folded surface, of which contours would cross.
+    """
     if result.surface.frame == "sections":
         return None
     low, high = map_corners(result)
     wide, tall = high - low
     z = np.concatenate([rim[:, 2] for rim in rims(result.surface).values()] or [result.surface.points.xyz[:, 2]])
     scale = max(scale_for(float(wide), DRAWING), scale_for(float(tall), TALLEST))
-    return PlanSheet(scale, interval_for(float(z.min()), float(z.max())))
+    per = LENGTH_UNITS[unit]
+    return PlanSheet(scale, interval_for(float(z.min()) / per, float(z.max()) / per) * per)
 
 
 def draw_contour_plan(sheet: PlanSheet, result: HorizonResult, t: Language = EN) -> Figure:
@@ -70,12 +76,24 @@ def draw_contour_plan(sheet: PlanSheet, result: HorizonResult, t: Language = EN)
     return figure
 
 
-def draw_map(axes: Axes, result: HorizonResult, interval: float, wide: float, t: Language = EN) -> None:
-    """Draw contours, study area, core, section lines, holes with names and points; the axes are ``wide`` mm wide."""
-    _contours(axes, result, interval)
+def draw_map(
+    axes: Axes,
+    result: HorizonResult,
+    interval: float,
+    wide: float,
+    t: Language = EN,
+    unit: LengthUnit = "m",
+    grid: LengthUnit | None = None,
+) -> None:
+    """Draw contours, study area, core, section lines, holes with names and points; the axes are ``wide`` mm wide.
+
+    ``interval`` is in metres, as everything but the numbers that are written: heights in ``unit``, eastings and
+    northings in that of the ``grid``.
+    """
+    _contours(axes, result, interval, unit)
     _base_map(axes, result, wide)
     _points(axes, result)
-    _frame(axes, t)
+    _frame(axes, t, grid or unit)
 
 
 def plan_caption(name: str, sheet: PlanSheet, t: Language) -> str:
@@ -101,7 +119,7 @@ def map_corners(result: HorizonResult) -> tuple[Floats, Floats]:
     return low - room, high + room
 
 
-def _contours(axes: Axes, result: HorizonResult, step: float) -> None:
+def _contours(axes: Axes, result: HorizonResult, step: float, unit: LengthUnit) -> None:
     surface = result.surface
     labelled: list[Floats] = []
     reach = float(np.ptp(axes.get_xlim()))
@@ -109,7 +127,7 @@ def _contours(axes: Axes, result: HorizonResult, step: float) -> None:
         heavy = round(one.elevation / step) % HEAVY == 0
         axes.plot(*one.line.T, color="#7a5a2f" if heavy else "#b89b72", lw=1.0 if heavy else 0.55, zorder=2)
         if heavy:
-            _label(axes, one.line, f"{one.elevation:g}", labelled, reach)
+            _label(axes, one.line, f"{round(one.elevation / LENGTH_UNITS[unit], 6):g}", labelled, reach)
 
 
 def _label(axes: Axes, line: Floats, text: str, labelled: list[Floats], reach: float) -> None:
@@ -169,14 +187,11 @@ def _points(axes: Axes, result: HorizonResult) -> None:
         axes.scatter(x, y, s=3 if marker == "." else 6, marker=marker, color=colour, lw=0, zorder=3, rasterized=True)
 
 
-def _frame(axes: Axes, t: Language) -> None:
+def _frame(axes: Axes, t: Language, unit: LengthUnit) -> None:
     """Draw the frame with a grid of round coordinates."""
-    from matplotlib.ticker import FuncFormatter, MaxNLocator
-
     wide, tall = axes.get_window_extent().size
     for axis, extent in ((axes.xaxis, wide), (axes.yaxis, tall)):
-        axis.set_major_locator(MaxNLocator(max(int(extent / 200 * 25.4 / 22), 1), steps=[1, 2, 5, 10]))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}".replace(",", "\N{NO-BREAK SPACE}")))
+        number_axis(axis, unit, max(int(extent / 200 * 25.4 / 22), 1))
     axes.grid(color=LINE, lw=0.35, zorder=0)
     axes.set_axisbelow(True)
     axes.tick_params(length=2.5, width=0.6, labelsize=6.2)
@@ -184,8 +199,8 @@ def _frame(axes: Axes, t: Language) -> None:
         label.set(rotation=90, va="center")
     for spine in axes.spines.values():
         spine.set(color=TEXT, linewidth=0.8)
-    axes.set_xlabel(t("Easting, m"), fontsize=7, labelpad=2)
-    axes.set_ylabel(t("Northing, m"), fontsize=7, labelpad=2)
+    axes.set_xlabel(t("Easting, {unit}", unit=unit_mark(unit)), fontsize=7, labelpad=2)
+    axes.set_ylabel(t("Northing, {unit}", unit=unit_mark(unit)), fontsize=7, labelpad=2)
 
 
 def map_handles(result: HorizonResult, t: Language) -> list[Line2D]:

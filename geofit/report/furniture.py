@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from geofit.data.lengths import LENGTH_UNITS, LengthUnit, unit_mark
 from geofit.report.style import MUTED, PAPER, TEXT
 
 if TYPE_CHECKING:
@@ -51,15 +52,16 @@ def scale_text(scale: int) -> str:
     return "1:" + digits.replace(",", "\N{NO-BREAK SPACE}")
 
 
-def scale_bar(axes: Axes, scale: int, x: float, y: float) -> None:
+def scale_bar(axes: Axes, scale: int, x: float, y: float, unit: LengthUnit = "m") -> None:
     """Draw a bar of four parts, about 40 mm long; ``x`` and ``y`` are millimetres from the axes' lower left corner."""
-    part = _round(10.0 * scale / 1000.0)
-    wide = part * 1000.0 / scale
+    per = LENGTH_UNITS[unit]
+    part = _round(10.0 * scale / 1000.0 / per)
+    wide = part * per * 1000.0 / scale
     for k in range(4):
         colour = TEXT if k % 2 == 0 else PAPER
         _box(axes, x + k * wide, y, wide, 1.3, colour)
     for k in (0, 1, 2, 4):
-        words = f"{part * k:g}" + ("\N{NO-BREAK SPACE}m" if k == 4 else "")
+        words = f"{part * k:g}" + (f"\N{NO-BREAK SPACE}{unit_mark(unit)}" if k == 4 else "")
         _word(axes, x + k * wide, y + 2.0, words)
 
 

@@ -10,17 +10,30 @@ from typing import TYPE_CHECKING, Any
 
 from geofit.data.files import file_stems, replacing
 from geofit.data.languages import Language
+from geofit.data.lengths import LENGTH_UNITS, LengthUnit
 from geofit.report.style import MUTED, TEXT, drawing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["BLOCK", "EDGE", "PAPERS", "SCALES", "SheetTitle", "framed_page", "save_pdf", "save_svg"]
+__all__ = [
+    "BLOCK",
+    "EDGE",
+    "PAPERS",
+    "SCALES",
+    "SheetTitle",
+    "drawing_scale",
+    "framed_page",
+    "save_pdf",
+    "save_svg",
+    "scales_of",
+]
 
 #: Paper in landscape, millimetres.
 PAPERS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A1": (841.0, 594.0), "A0": (1189.0, 841.0)}
-#: Scales on offer, 1 : so many.
+#: Scales on offer, 1 : so many; where lengths are feet, an inch is 10, 20, 30 ... feet.
 SCALES = (100, 200, 250, 500, 1000, 2000, 2500, 5000, 10_000, 20_000, 25_000, 50_000, 100_000)
+SCALES_FEET = (120, 240, 360, 480, 600, 1200, 2400, 3600, 4800, 6000, 12_000, 24_000, 36_000, 60_000, 120_000)
 #: Millimetres: frame from the paper's edge, title block.
 EDGE, BLOCK = 10.0, 24.0
 #: Lines of the patterns, and letters of the PDF as text.
@@ -29,13 +42,42 @@ _THIN: dict[Any, Any] = {"hatch.linewidth": 0.25, "pdf.fonttype": 42}
 
 @dataclass(frozen=True)
 class SheetTitle:
-    """What the title block says; empty lines stay empty. ``date`` is ISO 8601."""
+    """What the title block says; empty lines stay empty. ``date`` is ISO 8601.
+
+    ``unit`` is that of all numbers drawn, but for eastings and northings where the site's ``grid`` has another one.
+    """
 
     title: str
     project: str = ""
     number: str = ""
     author: str = ""
     date: str = ""
+    unit: LengthUnit = "m"
+    grid: LengthUnit | None = None
+
+    def shown(self, metres: float) -> float:
+        """Return a length in the unit of the drawing, free of the rounding of the conversion."""
+        return round(metres / LENGTH_UNITS[self.unit], 6)
+
+    def on_grid(self, metres: float) -> float:
+        """Return an easting or northing in the unit of the grid."""
+        return round(metres / LENGTH_UNITS[self.grid or self.unit], 6)
+
+
+def scales_of(unit: LengthUnit) -> tuple[int, ...]:
+    """Return the scales on offer for drawings in a unit."""
+    return SCALES if unit == "m" else SCALES_FEET
+
+
+def drawing_scale(scale: int, unit: LengthUnit) -> str:
+    """Return a scale as a title block has it; in feet also how many an inch is.
+
+    Examples
+    --------
+    >>> drawing_scale(500, "m"), drawing_scale(1200, "ft")
+    ('1:500', '1:1200 (1 in = 100 ft)')
+    """
+    return f"1:{scale}" if unit == "m" else f"1:{scale} (1 in = {scale / 12:g} ft)"
 
 
 def framed_page(

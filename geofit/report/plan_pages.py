@@ -10,11 +10,22 @@ from typing import TYPE_CHECKING
 
 from geofit.data.errors import SettingsError
 from geofit.data.languages import EN, Language
+from geofit.data.lengths import LengthUnit
 from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
 from geofit.report.contour_plan import draw_map, map_corners, map_handles, plan_sheet
 from geofit.report.furniture import north_arrow, scale_bar
-from geofit.report.paper import BLOCK, EDGE, PAPERS, SCALES, SheetTitle, framed_page, save_pdf, save_svg
+from geofit.report.paper import (
+    BLOCK,
+    EDGE,
+    PAPERS,
+    SheetTitle,
+    drawing_scale,
+    framed_page,
+    save_pdf,
+    save_svg,
+    scales_of,
+)
 from geofit.report.result import HorizonResult
 
 if TYPE_CHECKING:
@@ -26,7 +37,7 @@ __all__ = ["interval_of", "plan_scale", "write_plan_pdf", "write_plan_svg"]
 LEFT, BELOW, LEGEND, ABOVE = 16.0, 20.0, 54.0, 20.0
 
 
-def plan_scale(results: Sequence[HorizonResult], paper: str, scale: int | None = None) -> int:
+def plan_scale(results: Sequence[HorizonResult], paper: str, scale: int | None = None, unit: LengthUnit = "m") -> int:
     """Return the scale of plans, 1 : so many: the one asked for, or the largest at which every plan fits the paper.
 
     Raises
@@ -46,13 +57,13 @@ def plan_scale(results: Sequence[HorizonResult], paper: str, scale: int | None =
     wide, high = PAPERS[paper]
     room = (wide - 2 * EDGE - LEFT - LEGEND, high - 2 * EDGE - BLOCK - BELOW - ABOVE)
     sizes = [1000 * (high_corner - low) for low, high_corner in map(map_corners, results)]
-    fitting = [s for s in SCALES if all(x / s <= room[0] and y / s <= room[1] for x, y in sizes)]
+    fitting = [s for s in scales_of(unit) if all(x / s <= room[0] and y / s <= room[1] for x, y in sizes)]
     if not fitting:
         raise SettingsError(
             message(
                 "report.plan-without-scale",
                 "No scale up to 1:{scale} brings the plan onto {paper}. Choose larger paper.",
-                scale=SCALES[-1],
+                scale=scales_of(unit)[-1],
                 paper=paper,
             )
         )
@@ -67,8 +78,8 @@ def plan_scale(results: Sequence[HorizonResult], paper: str, scale: int | None =
     return scale or fitting[0]
 
 
-def interval_of(result: HorizonResult, interval: float | None) -> float:
-    """Return metres between contours: those asked for, or 1, 2 or 5 times a power of ten by the surface's relief.
+def interval_of(result: HorizonResult, interval: float | None, unit: LengthUnit = "m") -> float:
+    """Return metres between contours: those asked for, or 1, 2 or 5 times a power of ten of a unit by the relief.
 
     Raises
     ------
@@ -76,7 +87,7 @@ def interval_of(result: HorizonResult, interval: float | None) -> float:
         If the interval is not above 0.
     """
     if interval is None:
-        sheet = plan_sheet(result)
+        sheet = plan_sheet(result, unit)
         assert sheet is not None
         return sheet.interval
     if not is_finite(interval) or interval <= 0:
@@ -121,7 +132,7 @@ def write_plan_pdf(
     SettingsError
         As :func:`plan_scale` and :func:`interval_of`.
     """
-    chosen = plan_scale(results, paper, scale)
+    chosen = plan_scale(results, paper, scale, block.unit)
     save_pdf(_pages(results, block, interval, paper, chosen, language), block.title, path)
     return chosen
 
@@ -140,7 +151,7 @@ def write_plan_svg(
 
     Parameters and errors are those of :func:`write_plan_pdf`.
     """
-    chosen = plan_scale(results, paper, scale)
+    chosen = plan_scale(results, paper, scale, block.unit)
     pages = _pages(results, block, interval, paper, chosen, language)
     return save_svg(pages, [result.name for result in results], path)
 
@@ -148,7 +159,7 @@ def write_plan_svg(
 def _pages(
     results: Sequence[HorizonResult], block: SheetTitle, interval: float | None, paper: str, scale: int, t: Language
 ) -> list[Callable[[], Figure]]:
-    steps = [interval_of(result, interval) for result in results]
+    steps = [interval_of(result, interval, block.unit) for result in results]
     return [
         partial(_page, result, step, block, paper, scale, (number, len(results)), t)
         for number, (result, step) in enumerate(zip(results, steps, strict=True), 1)
@@ -160,10 +171,14 @@ def _page(
     t: Language,
 ) -> Figure:  # fmt: skip
     wide, high = PAPERS[paper]
-    line = t("elevations in metres, contours every {interval:g} m, each fifth heavy", interval=interval)
+    if block.unit == "m":
+        line = t("elevations in metres, contours every {interval:g} m, each fifth heavy", interval=interval)
+    else:
+        every = block.shown(interval)
+        line = t("elevations in feet, contours every {interval:g} ft, each fifth heavy", interval=every)
     if result.site.crs:
         line = t("{first}; {second}", first=line, second=result.site.crs)
-    figure = framed_page(paper, block, result.name, line, f"1:{scale}", sheet, t)
+    figure = framed_page(paper, block, result.name, line, drawing_scale(scale, block.unit), sheet, t)
     low, top = map_corners(result)
     across, up = (1000 * (top - low) / scale).tolist()
     left = EDGE + LEFT + (wide - 2 * EDGE - LEFT - LEGEND - across) / 2
@@ -171,10 +186,10 @@ def _page(
     axes = figure.add_axes((left / wide, bottom / high, across / wide, up / high))
     axes.set_xlim(low[0], top[0])
     axes.set_ylim(low[1], top[1])
-    draw_map(axes, result, interval, across, t)
+    draw_map(axes, result, interval, across, t, block.unit, block.grid)
     column = wide - EDGE - LEGEND + 4
     north_arrow(axes, column + 4 - left, high - EDGE - 32 - bottom, t("N"))
-    scale_bar(axes, scale, column - left, high - EDGE - 44 - bottom)
+    scale_bar(axes, scale, column - left, high - EDGE - 44 - bottom, block.unit)
     figure.legend(
         handles=map_handles(result, t), loc="upper left", bbox_to_anchor=(column / wide, (high - EDGE - 52) / high),
         fontsize=6.5, handlelength=1.8, borderaxespad=0, handletextpad=0.5,

@@ -12,8 +12,20 @@ import numpy as np
 
 from geofit.data.errors import SettingsError
 from geofit.data.languages import EN, Language
+from geofit.data.lengths import LengthUnit, unit_mark
 from geofit.data.messages import message
-from geofit.report.paper import BLOCK, EDGE, PAPERS, SCALES, SheetTitle, framed_page, save_pdf, save_svg
+from geofit.report.length_axis import number_axis
+from geofit.report.paper import (
+    BLOCK,
+    EDGE,
+    PAPERS,
+    SheetTitle,
+    drawing_scale,
+    framed_page,
+    save_pdf,
+    save_svg,
+    scales_of,
+)
 from geofit.report.style import LINE, MUTED, TEXT, horizon_colours, kind_style
 from geofit.site.section_view import HoleTrack, SectionView, lithologies
 
@@ -49,8 +61,8 @@ def lithology_style(codes: Sequence[str]) -> dict[str, tuple[str, str]]:
     }
 
 
-def fitting_scale(views: Sequence[SectionView], paper: str, exaggeration: float = 1.0) -> int:
-    """Return the largest of :data:`geofit.report.paper.SCALES` at which every section fits the paper.
+def fitting_scale(views: Sequence[SectionView], paper: str, exaggeration: float = 1.0, unit: LengthUnit = "m") -> int:
+    """Return the largest of the usual scales of a unit at which every section fits the paper.
 
     Raises
     ------
@@ -58,7 +70,7 @@ def fitting_scale(views: Sequence[SectionView], paper: str, exaggeration: float 
         If none does.
     """
     wide, high = _room(paper)
-    for scale in SCALES:
+    for scale in scales_of(unit):
         sizes = [_size(view, scale, exaggeration) for view in views]
         if all(across <= wide and up <= high for across, up in sizes):
             return scale
@@ -66,7 +78,7 @@ def fitting_scale(views: Sequence[SectionView], paper: str, exaggeration: float 
         message(
             "report.section-without-scale",
             "No scale up to 1:{scale} brings the sections onto {paper}. Choose larger paper or shorter sections.",
-            scale=SCALES[-1],
+            scale=scales_of(unit)[-1],
             paper=paper,
         )
     )
@@ -106,7 +118,7 @@ def write_sheet_pdf(
     SettingsError
         If a section does not fit the paper at the scale.
     """
-    chosen = _checked(views, paper, scale, exaggeration)
+    chosen = _checked(views, paper, scale, exaggeration, block.unit)
     save_pdf(_pages(views, block, paper, chosen, exaggeration, language), block.title, path)
     return chosen
 
@@ -125,7 +137,7 @@ def write_sheet_svg(
 
     Parameters and errors are those of :func:`write_sheet_pdf`.
     """
-    chosen = _checked(views, paper, scale, exaggeration)
+    chosen = _checked(views, paper, scale, exaggeration, block.unit)
     pages = _pages(views, block, paper, chosen, exaggeration, language)
     return save_svg(pages, [view.name for view in views], path)
 
@@ -139,7 +151,7 @@ def _pages(
     ]
 
 
-def _checked(views: Sequence[SectionView], paper: str, scale: int | None, exaggeration: float) -> int:
+def _checked(views: Sequence[SectionView], paper: str, scale: int | None, exaggeration: float, unit: LengthUnit) -> int:
     if paper not in PAPERS or not exaggeration > 0 or not views:
         raise SettingsError(
             message(
@@ -150,7 +162,7 @@ def _checked(views: Sequence[SectionView], paper: str, scale: int | None, exagge
                 factor=exaggeration,
             )
         )
-    least = fitting_scale(views, paper, exaggeration)
+    least = fitting_scale(views, paper, exaggeration, unit)
     if scale is not None and scale < least:
         raise SettingsError(
             message(
@@ -194,12 +206,16 @@ def sheet_page(
 ) -> Figure:
     (x0, y0), (x1, y1) = view.line[[0, -1]]
     line = t(
-        "from ({x0:.1f}, {y0:.1f}) to ({x1:.1f}, {y1:.1f}), {length:.0f} m; holes and points within {half:g} m",
-        x0=x0, y0=y0, x1=x1, y1=y1, length=view.length, half=view.thickness / 2,
+        "from ({x0:.1f}, {y0:.1f}) to ({x1:.1f}, {y1:.1f}), {length:.0f} {unit}; "
+        "holes and points within {half:g} {unit}",
+        x0=block.on_grid(x0), y0=block.on_grid(y0), x1=block.on_grid(x1), y1=block.on_grid(y1),
+        length=block.shown(view.length), half=round(block.shown(view.thickness / 2), 2), unit=unit_mark(block.unit),
     )  # fmt: skip
     true = t("true to scale") if exaggeration == 1 else t("elevations {factor:g} times higher", factor=exaggeration)
     wide, high = PAPERS[paper]
-    figure = framed_page(paper, block, view.name, line, f"1:{scale} · {true}", (number, len(views)), t)
+    figure = framed_page(
+        paper, block, view.name, line, f"{drawing_scale(scale, block.unit)} · {true}", (number, len(views)), t
+    )
     room_wide, room_high = _room(paper)
     across, up = _size(view, scale, exaggeration)
     bottom = EDGE + BLOCK + BELOW + max((room_high - up) / 2, 0)
@@ -207,7 +223,8 @@ def sheet_page(
     axes = figure.add_axes((left / wide, bottom / high, across / wide, up / high))
     colours = horizon_colours([*view.points, *(name for name in view.traces if name not in view.points)])
     styles = lithology_style(lithologies(list(views)))
-    _draw(axes, view, colours, styles, scale, exaggeration, t)
+    _draw(axes, view, colours, styles, scale, t)
+    _number(axes, block.unit, up, t)
     _legend(figure, axes, view, styles, (wide, high), t)
     return figure
 
@@ -218,7 +235,6 @@ def _draw(
     colours: Mapping[str, str],
     styles: Mapping[str, tuple[str, str]],
     scale: int,
-    exaggeration: float,
     t: Language,
 ) -> None:
     axes.set_xlim(0, view.length)
@@ -252,8 +268,14 @@ def _draw(
         if len(places):
             marker = kind_style("borehole")[0]
             axes.plot(*places.T, ls="none", marker=marker, ms=2.6, color=colours[name], mec="white", mew=0.3, zorder=6)
-    axes.set_xlabel(t("Distance along the section, m"))
-    axes.set_ylabel(t("Elevation, m"))
+
+
+def _number(axes: Axes, unit: LengthUnit, tall: float, t: Language) -> None:
+    """Write the axes in the unit of the drawing, which is ``tall`` mm high."""
+    number_axis(axes.xaxis, unit, 10)
+    number_axis(axes.yaxis, unit, min(max(int(tall / 10), 2), 8))
+    axes.set_xlabel(t("Distance along the section, {unit}", unit=unit_mark(unit)))
+    axes.set_ylabel(t("Elevation, {unit}", unit=unit_mark(unit)))
     axes.yaxis.grid(True, color=LINE, lw=0.5)
     axes.set_axisbelow(True)
 

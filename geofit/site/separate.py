@@ -145,7 +145,8 @@ class _Layer:
     """One horizon of the stack: its control net, its exact points, and the change so far."""
 
     def __init__(self, surface: HorizonFit) -> None:
-        if surface.model is None or surface.model.problem.parametrization.frame.kind != "map":
+        model = surface.model
+        if model is None or model.problem.parametrization.frame.kind != "map" or model.aside is not None:
             text = message(
                 "site.no-control-net",
                 "'{name}' has no control net over the map: it was read from a file, or is not a height "
@@ -153,7 +154,7 @@ class _Layer:
                 name=surface.name,
             )
             raise SettingsError(text)
-        self.surface, self.model = surface, surface.model
+        self.surface, self.model = surface, model
         problem, net = self.model.problem, self.model.net
         held = problem.kept & problem.parametrization.parametrized
         self.plane = problem.parametrization.plane / net.unit

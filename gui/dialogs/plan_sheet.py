@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QWidget
+from PySide6.QtWidgets import QComboBox, QWidget
 
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.dialogs.sheet import SheetDialog, metres_field
+from geofit.gui.dialogs.sheet import LengthField, SheetDialog
 from geofit.gui.translate import user_language
 from geofit.project.plan_sheet import PlanOrder, write_plan_sheet
 
@@ -43,9 +43,9 @@ class PlanSheetDialog(SheetDialog):
             self.which.addItem(words, tuple(self._surfaces))
         if chosen in self._surfaces:
             self.which.setCurrentText(chosen)
-        self.interval: QDoubleSpinBox = metres_field(0.0, 1000.0, 0.0)
+        self.interval = LengthField(0.0, 1000.0, 0.0)
         self.interval.setSpecialValueText(self.tr("By the relief"))
-        self.interval.setToolTip(self.tr("Metres between contours; 0: 1, 2 or 5 times a power of ten"))
+        self.interval.setToolTip(self.tr("Distance between contours; 0: 1, 2 or 5 times a power of ten"))
         self.lay_out(((self.tr("&Horizon"), self.which), (self.tr("C&ontours every"), self.interval)))
         self.say(self.tr("Heights, holes with names, study area, scale bar, north arrow; every fifth contour heavy."))
         self.refresh()
@@ -56,7 +56,7 @@ class PlanSheetDialog(SheetDialog):
             self.which.currentData(),
             self.title_block(),
             self.path(),
-            self.interval.value() or None,
+            self.interval.metres or None,
             self.wanted(),
             self.paper.currentText(),
             self.scale.currentData(),

@@ -6,8 +6,8 @@ from typing import cast
 
 from PySide6.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLabel, QWidget
 
+from geofit.data.lengths import LengthUnit
 from geofit.gui.language import LANGUAGES
-from geofit.gui.lengths import LengthUnit
 from geofit.gui.preferences import POINT_SIZES, TEXT_SIZES, Preferences
 from geofit.gui.theme import missing_chinese
 from geofit.gui.view3d.mouse import Scheme

@@ -13,7 +13,8 @@ from PySide6.QtWidgets import QComboBox, QWidget
 from geofit.data.prediction import Uncertainty
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.dialogs.sheet import SheetDialog, metres_field
+from geofit.gui.dialogs.sheet import LengthField, SheetDialog
+from geofit.gui.lengths import shown_length
 from geofit.gui.translate import user_language
 from geofit.project.section_sheet import SheetBody, SheetOrder, write_section_sheet
 from geofit.site.section_view import parallel_lines
@@ -47,12 +48,12 @@ class SectionSheetDialog(SheetDialog):
         self._surfaces = {name: surface.with_(model=None) for name, surface in surfaces.items()}
         self.which = QComboBox()
         self.which.addItem(self.tr("The line of the section panel"), "line")
-        self.which.addItem(self.tr("Across that line, every so many metres"), "across")
+        self.which.addItem(self.tr("Across that line, at equal distances"), "across")
         if site.sections:
             self.which.addItem(self.tr("Every section of the site ({n})").format(n=len(site.sections)), "sections")
-        self.spacing = metres_field(1.0, 1e5, 100.0)
-        self.half = metres_field(1.0, 1e5, 200.0)
-        self.thickness = metres_field(0.1, 1e5, thickness)
+        # Round numbers of the unit, but for what the section panel has.
+        self.spacing, self.half = LengthField(1.0, 1e5, 100.0), LengthField(1.0, 1e5, 200.0)
+        self.thickness = LengthField(0.1, 1e5, shown_length(thickness))
         self.factor = QComboBox()
         for factor in _FACTORS:
             self.factor.addItem(f"× {factor:g}", factor)
@@ -73,7 +74,7 @@ class SectionSheetDialog(SheetDialog):
         """Return the lines of the sections by their names; SettingsError where a number does not fit."""
         which = self.which.currentData()
         if which == "across":
-            return parallel_lines(self._line, self.spacing.value(), self.half.value())
+            return parallel_lines(self._line, self.spacing.metres, self.half.metres)
         if which == "sections":
             return {section.name: section.line for section in self._site.sections}
         return {"": self._line}
@@ -82,7 +83,7 @@ class SectionSheetDialog(SheetDialog):
         """Return what is asked for."""
         return SheetOrder(
             self.lines(),
-            self.thickness.value(),
+            self.thickness.metres,
             self.title_block(),
             self.path(),
             self.wanted(),

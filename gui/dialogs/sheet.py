@@ -26,11 +26,12 @@ from PySide6.QtWidgets import (
 from geofit.data.errors import GeofitError
 from geofit.data.site import Site
 from geofit.gui.dialogs.task_dialog import TaskDialog
+from geofit.gui.lengths import coordinate_unit, length_mark, length_unit, metres_shown, shown_length
 from geofit.gui.translate import failure
 from geofit.project.section_sheet import SheetForm
-from geofit.report.paper import PAPERS, SCALES, SheetTitle
+from geofit.report.paper import PAPERS, SheetTitle, drawing_scale, scales_of
 
-__all__ = ["SheetDialog", "metres_field"]
+__all__ = ["LengthField", "SheetDialog"]
 
 #: A field with its label.
 Row = tuple[str, QWidget]
@@ -50,8 +51,8 @@ class SheetDialog(TaskDialog):
         self.paper.addItems(list(PAPERS))
         self.paper.setCurrentText("A3")
         self.scale.addItem(self.tr("The largest that fits"), None)
-        for scale in SCALES:
-            self.scale.addItem(f"1:{scale}", scale)
+        for scale in scales_of(length_unit()):
+            self.scale.addItem(drawing_scale(scale, length_unit()), scale)
         self.title_line, self.project = QLineEdit(title), QLineEdit(site.name)
         self.number, self.author = QLineEdit(), QLineEdit()
         self.date = QLineEdit(QDate.currentDate().toString(Qt.DateFormat.ISODate))
@@ -70,7 +71,8 @@ class SheetDialog(TaskDialog):
     def title_block(self) -> SheetTitle:
         """Return what the title block says."""
         lines = (self.title_line, self.project, self.number, self.author, self.date)
-        return SheetTitle(*(line.text().strip() for line in lines))
+        title, project, number, author, date = (line.text().strip() for line in lines)
+        return SheetTitle(title, project, number, author, date, length_unit(), coordinate_unit())
 
     def path(self) -> Path:
         """Return the files but for their endings."""
@@ -155,11 +157,17 @@ class SheetDialog(TaskDialog):
         self.say(self.tr("Wrote {names} at 1:{scale}.").format(names=names, scale=scale), "passed")
 
 
-def metres_field(low: float, high: float, value: float) -> QDoubleSpinBox:
-    """Return a field for metres."""
-    spin = QDoubleSpinBox()
-    spin.setRange(low, high)
-    spin.setDecimals(1)
-    spin.setSuffix(" m")
-    spin.setValue(value)
-    return spin
+class LengthField(QDoubleSpinBox):
+    """A field for a length in the unit that the windows show."""
+
+    def __init__(self, low: float, high: float, value: float) -> None:
+        super().__init__()
+        self.setRange(round(shown_length(low), 1), shown_length(high))
+        self.setDecimals(1)
+        self.setSuffix(f" {length_mark()}")
+        self.setValue(value)
+
+    @property
+    def metres(self) -> float:
+        """The length in metres."""
+        return self.value() * metres_shown()

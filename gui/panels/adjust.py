@@ -26,17 +26,17 @@ class AdjustPanel(QWidget):
 
     ``adjust_requested`` and ``move_requested`` come from Apply, ``weigh_requested`` from Set; ``..._wanted`` a moment
     after the last edit, for whoever can tell the effect by :meth:`show_effect`; ``control_chosen`` follows the boxes,
-    ``control_moved(dz)`` every move at once, for whoever can tell its figures by :meth:`show_move`.
+    ``control_moved()`` every move at once, for whoever can tell its figures by :meth:`show_move`.
     """
 
-    adjust_requested = Signal(str, int, int, float)
+    adjust_requested = Signal(str, int, int, float, object)
     move_requested = Signal(object, float)
     weigh_requested = Signal(str, int, int, float)
-    adjust_wanted = Signal(str, int, int, float)
+    adjust_wanted = Signal(str, int, int, float, object)
     move_wanted = Signal(int, float)
     weigh_wanted = Signal(str, int, int, float)
     control_chosen = Signal(str, int, int)
-    control_moved = Signal(float)
+    control_moved = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -66,15 +66,17 @@ class AdjustPanel(QWidget):
         scroll.setFrameShape(QFrame.Shape.NoFrame)
         scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        # What is in it is never cut off at the right: there is no bar to reach it by.
+        scroll.setMinimumWidth(page.minimumSizeHint().width())
         self.pages = Placeholder(scroll)
         self.setLayout(self.pages)
         self._pause = QTimer(self, singleShot=True, interval=PAUSE)
         self._pause.timeout.connect(self._want)
         self.apply_button.clicked.connect(self.apply)
-        self.zero_button.clicked.connect(lambda: self.control.dz.setValue(0.0))
+        self.zero_button.clicked.connect(self.control.put_back)
         self.ways.currentChanged.connect(lambda _: self._edited())
         self.control.moved.connect(self._edited)
-        self.control.moved.connect(lambda: self.control_moved.emit(self.control.dz.value()))
+        self.control.moved.connect(self.control_moved)
         self.control.chosen.connect(self._tell_control)
         self.control.weigh_wanted.connect(lambda weight: self.weigh_wanted.emit(*self.control.target, weight))
         self.control.weigh_requested.connect(self._weigh)
@@ -154,7 +156,7 @@ class AdjustPanel(QWidget):
 
     def _want(self) -> None:
         if self.ways.currentWidget() is self.control:
-            self.adjust_wanted.emit(*self.control.target, self.control.dz.value())
+            self.adjust_wanted.emit(*self.control.target, self.control.dz.value(), self.control.aside)
         elif self.point.point is not None:
             self.move_wanted.emit(self.point.point, self.point.share.value() / 100)
 
@@ -164,7 +166,7 @@ class AdjustPanel(QWidget):
         if not self.apply_button.isEnabled():
             return
         if self.ways.currentWidget() is self.control:
-            self.adjust_requested.emit(*self.control.target, self.control.dz.value())
+            self.adjust_requested.emit(*self.control.target, self.control.dz.value(), self.control.aside)
         elif self.point.point is not None and self._surface is not None:
             row = Row.of(self._surface.points, self.point.point)
             self.move_requested.emit(row, self.point.share.value() / 100)

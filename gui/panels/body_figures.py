@@ -153,8 +153,8 @@ class BodyFigures(QWidget):
                 ),
                 TableColumn(self.tr("Length, m"), np.array([one.length for one in found], float), 2),
                 TableColumn(self.tr("In words"), np.array([translated(one.text) for one in found], str)),
-                TableColumn(self.tr("Easting, m"), places[:, 0], 2),
-                TableColumn(self.tr("Northing, m"), places[:, 1], 2),
+                TableColumn(self.tr("Easting, m"), places[:, 0], 2, coordinate=True),
+                TableColumn(self.tr("Northing, m"), places[:, 1], 2, coordinate=True),
                 TableColumn(self.tr("Elevation, m"), places[:, 2], 2),
             ]
         )

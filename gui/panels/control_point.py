@@ -6,6 +6,7 @@ from functools import partial
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QComboBox,
@@ -22,7 +23,7 @@ from PySide6.QtWidgets import (
 from geofit.data.errors import GeofitError
 from geofit.fitting.edit import acted_on, support
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.lengths import in_lengths
+from geofit.gui.lengths import in_lengths, shown_coordinate, shown_length
 from geofit.gui.panels.weight import WeightBox
 from geofit.gui.translate import translated
 from geofit.splines.patch import Patch
@@ -34,7 +35,7 @@ STEPS = (-1.0, -0.1, 0.1, 1.0)
 
 
 class ControlPointPage(QWidget):
-    """Boxes for a patch, a row and a column, a move and a weight.
+    """Boxes for a patch, a row and a column, a move along the height, one aside, and a weight.
 
     ``chosen(patch, i, j)`` follows the boxes; ``moved()`` reports every other move, ``weigh_wanted(weight)`` of every
     other weight, and ``weigh_requested(weight)`` comes from Set.
@@ -51,6 +52,7 @@ class ControlPointPage(QWidget):
         self.held = False
         self.patch, self.i, self.j = QComboBox(), QSpinBox(), QSpinBox()
         self.dz, self.z = QDoubleSpinBox(), QDoubleSpinBox()
+        self.sideways, self.directions = (QDoubleSpinBox(), QDoubleSpinBox()), (QLabel(), QLabel())
         self.weight, self.about = WeightBox(), QLabel()
         self.steps = [QPushButton(f"{step:+g}".replace("-", "−")) for step in STEPS]
         self._set_up_boxes()
@@ -61,6 +63,8 @@ class ControlPointPage(QWidget):
         for box in (self.i, self.j):
             box.valueChanged.connect(lambda _: self._choose())
         self.dz.valueChanged.connect(self._follow_move)
+        for side in self.sideways:
+            side.valueChanged.connect(lambda _: self._follow_move(self.dz.value()))
         self.z.valueChanged.connect(self._follow_elevation)
 
     @property
@@ -71,7 +75,33 @@ class ControlPointPage(QWidget):
     @property
     def ready(self) -> bool:
         """Whether there is a move that can be made."""
-        return self.dz.value() != 0 and not self.held
+        return (self.dz.value() != 0 or any(self.aside)) and not self.held
+
+    @property
+    def aside(self) -> tuple[float, float, float]:
+        """The move aside in map coordinates, metres."""
+        a, b = (box.value() for box in self.sideways)
+        if not (a or b):
+            return 0.0, 0.0, 0.0
+        x, y, z = (a * self._ways()[0] + b * self._ways()[1]).tolist()
+        return x, y, z
+
+    def put(self, by: NDArray[np.float64]) -> None:
+        """Show a move of (3,) metres in map coordinates, rounded to millimetres."""
+        for box, way in zip((*self.sideways, self.dz), self._ways(), strict=True):
+            _put(box, float(by @ way))
+        self._follow_move(self.dz.value())
+
+    def put_back(self) -> None:
+        """Show no move."""
+        self.put(np.zeros(3))
+
+    def _ways(self) -> NDArray[np.float64]:
+        """Return the unit vectors (3, 3) of the moves aside, and of the height: over the map, easting and northing."""
+        assert self._surface is not None
+        assert self._surface.model is not None
+        frame = self._surface.model.problem.parametrization.frame
+        return np.eye(3) if frame.kind == "map" else np.asarray(frame.axes)
 
     def show_surface(self, surface: HorizonFit) -> None:
         """Show a surface that has a control net; the control point stays chosen where it has it."""
@@ -102,7 +132,8 @@ class ControlPointPage(QWidget):
         for index, name in ((self.i, self.tr("Row")), (self.j, self.tr("Column"))):
             index.setAccessibleName(name)
             index.setMinimumWidth(44)
-        for box, most, name in ((self.dz, 1000.0, self.tr("Move by")), (self.z, 12000.0, self.tr("Elevation"))):
+        named = ((self.dz, 1000.0, self.tr("Move by")), (self.z, 12000.0, self.tr("Elevation")))
+        for box, most, name in (*named, *((box, 1000.0, "") for box in self.sideways)):
             box.setRange(-most, most)
             box.setDecimals(3)
             box.setSingleStep(0.1)
@@ -135,13 +166,19 @@ class ControlPointPage(QWidget):
         form.addRow(self.tr("Move by"), self.dz)
         form.addRow(steps)
         form.addRow(self.tr("Elevation"), self.z)
+        for label, box in zip(self.directions, self.sideways, strict=True):
+            label.setBuddy(box)
+            form.addRow(label, box)
         form.addRow(self.tr("Weight"), self.weight)
         page = QVBoxLayout(self)
         page.setContentsMargins(8, 8, 8, 8)
         page.addLayout(form)
         page.addWidget(self.about)
         page.addStretch(1)
-        order = (self.patch, self.i, self.j, self.dz, *self.steps, self.z, self.weight.value, self.weight.button)
+        order = (
+            self.patch, self.i, self.j, self.dz, *self.steps, self.z, *self.sideways, self.weight.value,
+            self.weight.button,
+        )  # fmt: skip
         for before, after in pairwise(order):
             self.setTabOrder(before, after)
 
@@ -173,9 +210,13 @@ class ControlPointPage(QWidget):
     def _show(self) -> None:
         """Show where the control point stands, what it moves, and what holds it; it has not moved yet."""
         x, y, z = self._place()
-        _put(self.dz, 0.0)
+        for box in (self.dz, *self.sideways):
+            _put(box, 0.0)
         _put(self.z, float(z))
-        words = self.tr("At ({x:.1f}, {y:.1f}, {z:.2f})").format(x=x, y=y, z=z)
+        self._name_ways()
+        words = self.tr("At ({x:.1f}, {y:.1f}, {z:.2f})").format(
+            x=shown_coordinate(x), y=shown_coordinate(y), z=shown_length(z)
+        )
         try:
             reach, self.held = self._reach()
             words += "\n" + reach
@@ -185,8 +226,17 @@ class ControlPointPage(QWidget):
         weights = self._patch().weights
         weight = 1.0 if weights is None else float(weights[self.i.value(), self.j.value()])
         self.weight.show_weight(weight, held=self.held)
-        for widget in (self.dz, self.z, *self.steps):
+        for widget in (self.dz, self.z, *self.sideways, *self.steps):
             widget.setEnabled(not self.held)
+
+    def _name_ways(self) -> None:
+        """Say where the moves aside go: over the map, or in the plane of a steep surface."""
+        over = bool(np.array_equal(self._ways(), np.eye(3)))
+        names = (self.tr("East"), self.tr("North")) if over else (self.tr("Along strike"), self.tr("Up dip"))
+        for label, box, name in zip(self.directions, self.sideways, names, strict=True):
+            label.setText(name)
+            box.setAccessibleName(name)
+            box.setToolTip(self.tr("Move aside; the surface is then a height field no longer."))
 
     def _reach(self) -> tuple[str, bool]:
         """Return what a move would change, and whether exact points forbid it."""

@@ -197,8 +197,8 @@ class PredictionPanel(QWidget):
                 self.tr("Average standard deviation of the surface after this hole and those before it."),
             ),
             TableColumn(self.tr("Most after, m"), _of(holes, lambda hole: hole.max_after), 2),
-            TableColumn(self.tr("Easting, m"), _of(holes, lambda hole: hole.x), 1),
-            TableColumn(self.tr("Northing, m"), _of(holes, lambda hole: hole.y), 1),
+            TableColumn(self.tr("Easting, m"), _of(holes, lambda hole: hole.x), 1, coordinate=True),
+            TableColumn(self.tr("Northing, m"), _of(holes, lambda hole: hole.y), 1, coordinate=True),
             TableColumn(self.tr("Elevation, m"), _of(holes, lambda hole: hole.z), 1),
         ]  # fmt: skip
 

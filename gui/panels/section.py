@@ -16,7 +16,7 @@ from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QLabel, QV
 from geofit.data.prediction import Uncertainty
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.lengths import length_mark, shown_length
+from geofit.gui.lengths import length_mark, shown_coordinate, shown_length
 from geofit.gui.panels.canvas import PlotCanvas, PlotColours, place_axes
 from geofit.gui.panels.curtain import Curtain, Meshes, Traces, site_extent, trace
 from geofit.gui.panels.flow import FlowLayout
@@ -279,7 +279,8 @@ class SectionPanel(QWidget):
         assert self.data is not None
         (x0, y0), (x1, y1) = self.data.curtain.line[[0, -1]]
         text = self.tr("From ({x0:.1f}, {y0:.1f}) to ({x1:.1f}, {y1:.1f}), {length:.0f} m")
-        x0, y0, x1, y1, length = (shown_length(float(value)) for value in (x0, y0, x1, y1, self.data.curtain.length))
+        x0, y0, x1, y1 = (shown_coordinate(float(value)) for value in (x0, y0, x1, y1))
+        length = shown_length(float(self.data.curtain.length))
         self.state.setText(text.format(x0=x0, y0=y0, x1=x1, y1=y1, length=length).removesuffix("m") + length_mark())
 
     def _paint(self, colours: PlotColours) -> None:

@@ -165,8 +165,8 @@ class StereonetPanel(QWidget):
                 TableColumn(self.tr("Surface azimuth, °"), table.surface_azimuth, 0),
                 TableColumn(self.tr("Surface dip, °"), table.surface_dip, 0),
                 TableColumn(self.tr("Horizon"), horizon),
-                TableColumn(self.tr("Easting, m"), xyz[:, 0], 1),
-                TableColumn(self.tr("Northing, m"), xyz[:, 1], 1),
+                TableColumn(self.tr("Easting, m"), xyz[:, 0], 1, coordinate=True),
+                TableColumn(self.tr("Northing, m"), xyz[:, 1], 1, coordinate=True),
                 TableColumn(self.tr("Elevation, m"), xyz[:, 2], 1),
             ]
         )

@@ -31,7 +31,7 @@ from PySide6.QtGui import QAction, QIcon, QKeySequence, QPalette, QResizeEvent
 from PySide6.QtWidgets import QAbstractItemView, QApplication, QFileDialog, QHeaderView, QMenu, QTableView, QWidget
 
 from geofit.data.files import replacing, spreadsheet_cell
-from geofit.gui.lengths import in_title, shown_length
+from geofit.gui.lengths import in_title, shown_coordinate, shown_length
 from geofit.gui.preferences import Preferences
 from geofit.gui.translate import translated
 
@@ -69,6 +69,7 @@ class TableColumn:
     """A column: its title, its values (n,), and with how many digits numbers are written (nan stays empty).
 
     ``icons`` returns the mark before a cell; ``order`` is what the column sorts by, where that is not the values.
+    ``coordinate``: they are eastings or northings.
     """
 
     title: str
@@ -77,6 +78,7 @@ class TableColumn:
     tooltip: str = ""
     icons: Callable[[int], QIcon | None] | None = None
     order: ArrayLike | None = None
+    coordinate: bool = False
 
     def text(self, row: int) -> str:
         """Return the cell as it is shown."""
@@ -88,10 +90,11 @@ class TableColumn:
 
     def shown(self) -> TableColumn:
         """Return the column as it is shown: one of lengths, whose title ends in ", m", in the chosen unit."""
-        title = in_title(self.title)
+        title = in_title(self.title, coordinate=self.coordinate)
         if title == self.title or not self.number:
             return self
-        return replace(self, title=title, values=shown_length(np.asarray(self.values, float)))
+        shown = shown_coordinate if self.coordinate else shown_length
+        return replace(self, title=title, values=shown(np.asarray(self.values, float)))
 
     @property
     def number(self) -> bool:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.gui.lengths import length_mark, metres_shown, shown_length
+from geofit.data.lengths import LENGTH_UNITS, LengthUnit
+from geofit.gui.lengths import coordinate_unit, length_mark, length_unit, shown_coordinate, shown_length
 from geofit.gui.view3d.projector import Projector
 
 __all__ = ["Mark", "floor_lines", "grouped", "marks", "nice", "ticks"]
@@ -43,12 +44,12 @@ def grouped(value: float) -> str:
     return text.replace("-", "−")
 
 
-def ticks(low: float, high: float, step: float) -> Floats:
+def ticks(low: float, high: float, step: float, unit: LengthUnit | None = None) -> Floats:
     """Return the multiples of a step inside a range, or of a greater one where there are too many; metres.
 
-    They are round in the unit that is shown.
+    They are round in a unit: that which is shown, where none is given.
     """
-    per = metres_shown()
+    per = LENGTH_UNITS[unit or length_unit()]
     low, high = low / per, high / per
     step = step if per == 1.0 else nice(step / per)
     while (high - low) / step > MOST:
@@ -61,8 +62,8 @@ def ticks(low: float, high: float, step: float) -> Floats:
 def floor_lines(box: Floats, step: float) -> tuple[Floats, list[NDArray[np.int64]]]:
     """Return the lines of the coordinate grid at the bottom of a box (2, 3), and its rim: points and runs."""
     (x0, y0, z), (x1, y1, _) = box
-    ends = [((x, y0, z), (x, y1, z)) for x in (x0, *ticks(x0, x1, step), x1)]
-    ends += [((x0, y, z), (x1, y, z)) for y in (y0, *ticks(y0, y1, step), y1)]
+    ends = [((x, y0, z), (x, y1, z)) for x in (x0, *ticks(x0, x1, step, coordinate_unit()), x1)]
+    ends += [((x0, y, z), (x1, y, z)) for y in (y0, *ticks(y0, y1, step, coordinate_unit()), y1)]
     return np.array(ends).reshape(-1, 3), list(np.arange(2 * len(ends)).reshape(-1, 2))
 
 
@@ -103,7 +104,7 @@ def _along(
 ) -> list[Mark]:
     if axis == 2:
         step = nice((box[1, 2] - box[0, 2]) / 3)
-    values = ticks(box[0, axis], box[1, axis], step)
+    values = ticks(box[0, axis], box[1, axis], step, length_unit() if axis == 2 else coordinate_unit())
     places = np.tile(base, (len(values), 1))
     places[:, axis] = values
     seen = view.screen(places)[:, :2] if len(values) else np.empty((0, 2))
@@ -116,8 +117,7 @@ def _along(
     for value, (x, y) in zip(values.tolist(), seen.tolist(), strict=True):
         inside = 0 <= x <= view.width and 0 <= y <= view.height
         if inside and (not kept or math.hypot(x - kept[-1].x, y - kept[-1].y) >= gap):
+            number = grouped(round(shown_length(value) if axis == 2 else shown_coordinate(value), 6))
             unit = f" {length_mark()}" if axis == 2 else ""
-            kept.append(
-                Mark(x, y, (float(out[0]), float(out[1])), f"{letter}{grouped(round(shown_length(value), 6))}{unit}")
-            )
+            kept.append(Mark(x, y, (float(out[0]), float(out[1])), f"{letter}{number}{unit}"))
     return kept

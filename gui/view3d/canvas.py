@@ -53,7 +53,8 @@ class Canvas(QtInteractor):
     Left drag turns, middle or right drag (or Shift with left) moves sideways, the wheel comes nearer to what is under
     the pointer. ``clicked``, ``asked`` (the right button)
     and ``hovered`` tell the pointer's place in logical pixels. ``handle``, if set, is asked
-    first: ``press(pos) -> bool``, then ``drag(pos)`` and ``release()``, or ``cancel()`` where Escape is pressed.
+    first: ``press(pos) -> bool``, then ``drag(pos, shift)`` and ``key(key, text)``, and ``release()``, which Enter
+    does, too, or ``cancel()`` where Escape is pressed.
     ``prepare`` is told of every frame before it is drawn: how it is seen, and how many pixels it has.
     """
 
@@ -248,7 +249,7 @@ class Canvas(QtInteractor):
         if self._held is None:
             self.hovered.emit(here)
         elif self._held == "handle":
-            self.handle.drag(here)
+            self.handle.drag(here, bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier))
         elif self._held == "turn":
             if (here - self._pressed).manhattanLength() >= CLICK or not self.full:
                 self.look(self.viewpoint.turned(-TURN * step.x(), TURN * step.y()), moving=True)
@@ -282,11 +283,23 @@ class Canvas(QtInteractor):
         self.look(self.viewpoint.nearer(NOTCH ** (event.angleDelta().y() / 120), right, up), moving=True)
         event.accept()
 
+    def event(self, event: QEvent) -> bool:
+        """While something is dragged, keys belong to it, not to the shortcuts of the menus."""
+        if event.type() == QEvent.Type.ShortcutOverride and self._held == "handle":
+            event.accept()
+            return True
+        return bool(super().event(event))
+
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
-        """Turn by the arrow keys, come nearer by plus and minus; Escape gives up a drag."""
+        """Turn by the arrow keys, come nearer by plus and minus; Escape gives up a drag, Enter ends it."""
         if event.key() == Qt.Key.Key_Escape and self._held == "handle":
             self._held = "cancelled"
             self.handle.cancel()
+        elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self._held == "handle":
+            self._held = "ended"
+            self.handle.release()
+        elif self._held == "handle" and self.handle.key(event.key(), event.text()):
+            pass
         elif (turn := _KEYS.get(Qt.Key(event.key()))) is not None:
             self.look(self.viewpoint.turned(*turn), moving=True)
         elif event.text() in ("+", "-"):

@@ -15,6 +15,7 @@ from geofit.fitting.preview import MovePreview
 from geofit.gui.view3d.actors import ActorPart, coloured, lines, poly, triangles
 from geofit.gui.view3d.contents import Contents
 from geofit.gui.view3d.drawn import Drawn
+from geofit.gui.view3d.free_drag import FreeDrag
 from geofit.gui.view3d.handles import Handle
 from geofit.gui.view3d.item import Look
 from geofit.gui.view3d.moved_region import MovedRegion, moved_region
@@ -37,15 +38,15 @@ EXTRA = "control move"
 class ControlMove:
     """The one control point that is chosen: it can be dragged, or ``reason`` states why not.
 
-    ``dragged(dz)`` hears how far it was pulled, metres; ``dropped()`` that it was let go; ``refused(reason)`` that
-    somebody pulls at one that cannot move.
+    ``dragged(vector)`` hears how far it was pulled, (3,) metres in map coordinates; ``dropped()`` that it was let go;
+    ``refused(reason)`` that somebody pulls at one that cannot move.
     """
 
     def __init__(
         self,
         stage: Stage,
         contents: Contents,
-        dragged: Callable[[float], None],
+        dragged: Callable[[Floats], None],
         dropped: Callable[[], None],
         refused: Callable[[str], None],
     ) -> None:
@@ -57,29 +58,30 @@ class ControlMove:
         self._region: MovedRegion | None = None
         self._look: Look | None = None
         self._data: tuple[Any, Any] | None = None
-        self.dz, self.figures, self.reason, self.waits = 0.0, "", "", False
+        self.by, self.figures, self.reason, self.waits = np.zeros(3), "", "", False
         self._preview: MovePreview | None = None
 
     def show(self, horizon: str, preview: MovePreview | None, reason: str = "") -> None:
         """Show what a control point of a surface moves, or why it cannot move; neither: nothing."""
         self._put_back()
         self._horizon, self._preview, self.reason = horizon, preview, reason
-        self.dz, self.figures, self.waits = 0.0, "", False
+        self.by, self.figures, self.waits = np.zeros(3), "", False
         self._find_region()
         self._control = None if preview is None else _control_of(preview)
         self._draw()
 
-    def move(self, dz: float, figures: str = "") -> None:
-        """Show the surface with the control point moved by ``dz`` metres, and the figures that it then has."""
+    def move(self, by: Floats, figures: str = "") -> None:
+        """Show the surface with the control point moved by (3,) metres, and the figures that it then has."""
         if self._preview is None:
             return
-        cut, self.dz, self.figures = bool(dz) != bool(self.dz), dz, figures
+        away = bool(by.any())
+        cut, self.by, self.figures = away != bool(self.by.any()), by, figures
         if cut:
             # Near by, the surface may have got other triangles since the control point was chosen.
-            if dz and self._whole is not self._contents.drawn.get(self._horizon):
+            if away and self._whole is not self._contents.drawn.get(self._horizon):
                 self._find_region()
                 self._data = None
-            self._contents.cut_out(self._horizon, self._region if dz else None)
+            self._contents.cut_out(self._horizon, self._region if away else None)
         self._place_control()
         if self._data is None or self._look is not self._stage.look:
             self._draw()
@@ -94,21 +96,23 @@ class ControlMove:
     def handles(self) -> list[Handle]:
         """Return the control point itself as a handle, until its move is being applied."""
         if self._preview is not None and not self.waits:
-            place, way, start = self._place(), self._preview.way, self.dz
-            moved = partial(self._pull, place - start * way)
-            return [Handle(place, moved, way, dropped=self._dropped, drawn=False)]
+            rest = np.asarray(self._preview.place)
+            moved = partial(self._pull, rest)
+            return [Handle(self._place(), moved, self._preview.way, dropped=self._dropped, drawn=False, rest=rest)]
         return []
 
     def held(self, ring: Ring) -> list[Handle]:
         """Return the control point in a ring as a handle that reports why it cannot move."""
         return [Handle(ring.xyz, lambda _: self._refused(self.reason), drawn=False)] if self.reason else []
 
-    def dressed(self, ring: Ring) -> Ring:
-        """Return the ring about the control point where it is now, with what the move does."""
+    def dressed(self, ring: Ring, drag: FreeDrag | None = None) -> Ring:
+        """Return the ring about the control point where it is now, with what the move does and what holds it."""
         if self._preview is None:
             return replace(ring, text=f"{ring.text}\n{self.reason}") if self.reason else ring
-        text = f"{ring.text}\n{self.figures}" if self.figures else ring.text
-        return replace(ring, xyz=self._place(), text=text, way=None if self.waits else self._preview.way)
+        lines = (ring.text, "" if drag is None else drag.words, self.figures)
+        way = self._preview.way if drag is None or drag.axis is None else drag.axis
+        text = "\n".join(line for line in lines if line)
+        return replace(ring, xyz=self._place(), text=text, way=None if self.waits else way)
 
     @property
     def shown(self) -> bool:
@@ -118,7 +122,7 @@ class ControlMove:
     @property
     def drawn(self) -> Shape | None:
         """The triangles of what moves, where they are now; None where nothing is chosen."""
-        return None if self._region is None else self._region.moved(self.dz)
+        return None if self._region is None else self._region.moved(self.by)
 
     @property
     def horizon(self) -> str:
@@ -127,22 +131,22 @@ class ControlMove:
 
     def _place(self) -> Floats:
         assert self._preview is not None
-        return np.asarray(self._preview.place + self.dz * self._preview.way)
+        return np.asarray(self._preview.place + self.by)
 
     def _pull(self, start: Floats, xyz: Floats) -> None:
         if self._preview is not None:
-            self._dragged(float((xyz - start) @ self._preview.way))
+            self._dragged(xyz - start)
 
     def _put_back(self) -> None:
         """Show the surface as it is, unless it is another one by now."""
         if self._preview is not None and self._contents.surfaces.get(self._horizon) is self._preview.surface:
-            self.dz = 0.0
+            self.by = np.zeros(3)
             self._contents.cut_out(self._horizon, None)
             self._place_control()
 
     def _place_control(self) -> None:
         if self._control is not None:
-            self._contents.place_control(self._horizon, self._control[0] + self.dz * self._control[1])
+            self._contents.place_control(self._horizon, self._control[0] + self._control[1] * self.by)
 
     def _find_region(self) -> None:
         """Cut what the control point moves out of the triangles that are drawn."""
@@ -156,11 +160,11 @@ class ControlMove:
         self._data = None
         parts: list[ActorPart] = []
         if self._preview is not None:
-            rim = self._preview.rim(self.dz)
+            rim = self._preview.rim(0.0, self.by.tolist())
             border = poly(rim - look.origin, runs=[np.arange(len(rim))])
             parts.append(ActorPart(lines(border, MARK[look.dark], 4.0), width=2.0))
             if self._region is not None and len(self._region.inside.triangles):
-                shape = self._region.moved(self.dz)
+                shape = self._region.moved(self.by)
                 data = poly(shape.xyz - look.origin, faces=shape.triangles, normals=shape.normals)
                 actor = triangles(data, MARK[look.dark])
                 # What moves lies on the surface until it moves: it is drawn in front of it.
@@ -181,8 +185,8 @@ class ControlMove:
         """Move what is drawn; nothing is built anew."""
         assert self._region is not None
         assert self._preview is not None
-        shape, origin = self._region.moved(self.dz), self._stage.look.origin
-        for one, places in ((data, shape.xyz), (border, self._preview.rim(self.dz))):
+        shape, origin = self._region.moved(self.by), self._stage.look.origin
+        for one, places in ((data, shape.xyz), (border, self._preview.rim(0.0, self.by.tolist()))):
             one.GetPoints().SetData(numpy_to_vtk(np.ascontiguousarray(places - origin, np.float32), deep=True))
             one.GetPoints().Modified()
         data.GetPointData().SetNormals(numpy_to_vtk(np.ascontiguousarray(shape.normals, np.float32), deep=True))
@@ -190,8 +194,8 @@ class ControlMove:
 
 
 def _control_of(preview: MovePreview) -> tuple[Floats, Floats]:
-    """Return the control points of all patches (n, 3), map coordinates, and how they move for a move of one metre."""
+    """Return the control points of all patches (n, 3), map coordinates, and their shares (n, 1) of the move."""
     surface = preview.surface
     places = [patch.control.reshape(-1, 3) for patch in surface.patches]
     shares = [share.ravel() for share in preview.control_shares()]
-    return np.concatenate(places) + surface.origin, np.concatenate(shares)[:, None] * preview.way
+    return np.concatenate(places) + surface.origin, np.concatenate(shares)[:, None]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF
 
+from geofit.gui.view3d.free_drag import FreeDrag
 from geofit.gui.view3d.projector import Projector
 
 __all__ = ["Handle", "Handles"]
@@ -25,7 +26,8 @@ CLICK = 4.0
 class Handle:
     """A handle at ``xyz`` (map coordinates): moved on its level, or along ``way`` (3,); ``moved`` hears where to.
 
-    ``dropped`` hears that it was let go. A handle that is not ``drawn`` has a sign of its own.
+    One with a place of ``rest`` moves freely, and ``way`` is its normal. ``dropped`` hears that it was let go. A handle
+    that is not ``drawn`` has a sign of its own.
     """
 
     xyz: Floats
@@ -33,6 +35,7 @@ class Handle:
     way: Floats | None = None
     dropped: Callable[[], None] = lambda: None
     drawn: bool = True
+    rest: Floats | None = None
 
 
 class Handles:
@@ -41,7 +44,8 @@ class Handles:
     def __init__(self, places: Callable[[], list[Handle]], view: Callable[[], Projector]) -> None:
         self._places, self._view = places, view
         self._held: Handle | None = None
-        self._pressed, self._begun = QPointF(), False
+        self._pressed, self._at, self._begun, self._straight = QPointF(), QPointF(), False, False
+        self.free: FreeDrag | None = None
 
     def at(self, pos: QPointF) -> Handle | None:
         """Return the handle under the pointer."""
@@ -54,27 +58,41 @@ class Handles:
 
     def press(self, pos: QPointF) -> bool:
         """Take the handle under the pointer; False if there is none."""
-        self._held, self._pressed, self._begun = self.at(pos), pos, False
+        self._held, self._pressed, self._at, self._begun = self.at(pos), pos, pos, False
+        handle = self._held
+        if handle is not None and handle.rest is not None and handle.way is not None:
+            self.free = FreeDrag(handle.xyz, handle.rest, handle.way)
         return self._held is not None
 
-    def drag(self, pos: QPointF) -> None:
-        """Move the handle that is held."""
+    def drag(self, pos: QPointF, straight: bool = False) -> None:
+        """Move the handle that is held; ``straight``: along its normal."""
+        self._at, self._straight = pos, straight
         self._begun |= (pos - self._pressed).manhattanLength() >= CLICK
         if self._held is None or not self._begun:
             return
         view, handle = self._view(), self._held
-        if handle.way is None:
+        by = pos - self._pressed
+        if self.free is not None:
+            target = self.free.target(view, (by.x(), by.y()), straight)
+        elif handle.way is None:
             target = view.on_level(pos.x(), pos.y(), float(handle.xyz[2]))
         else:
-            by = pos - self._pressed
             share = view.pulled(handle.xyz, handle.way, (by.x(), by.y()))
             target = None if share is None else handle.xyz + share * handle.way
         if target is not None:
             handle.moved(target)
 
+    def key(self, key: int, text: str) -> bool:
+        """Take a key for the drag that goes on: an axis, or a figure of its length; False where it means neither."""
+        if self.free is None or not self.free.key(key, text):
+            return False
+        self._begun = True
+        self.drag(self._at, self._straight)
+        return True
+
     def release(self) -> None:
         """Let go."""
-        held, self._held = self._held, None
+        held, self._held, self.free = self._held, None, None
         if held is not None and self._begun:
             held.dropped()
 

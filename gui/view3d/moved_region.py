@@ -34,20 +34,19 @@ class MovedRegion:
         Fine triangles of the support.
     share : (n,) array
         By how many metres each vertex of ``inside`` moves for a metre of the control point.
-    way : (3,) array
-        Unit vector along which they move.
     """
 
     touched: Bools
     beside: Shape
     inside: Shape
     share: Floats
-    way: Floats
 
-    def moved(self, dz: float) -> Shape:
-        """Return the triangles of the support after a move, with their normals."""
-        xyz = self.inside.xyz + (dz * self.share)[:, None] * self.way
-        return replace(self.inside, xyz=xyz, normals=_normals(xyz, self.inside.triangles)) if dz else self.inside
+    def moved(self, by: Floats) -> Shape:
+        """Return the triangles of the support after a move by (3,) metres, with their normals."""
+        if not by.any():
+            return self.inside
+        xyz = self.inside.xyz + self.share[:, None] * by
+        return replace(self.inside, xyz=xyz, normals=_normals(xyz, self.inside.triangles))
 
 
 def moved_region(shape: Shape, preview: MovePreview) -> MovedRegion:
@@ -70,9 +69,7 @@ def moved_region(shape: Shape, preview: MovePreview) -> MovedRegion:
     middle = preview.parameters(piece.xyz[piece.triangles].mean(axis=1))
     within = (middle[:, 0] > u0) & (middle[:, 0] < u1) & (middle[:, 1] > v0) & (middle[:, 1] < v1)
     inside = _refined(_compact(piece, piece.triangles[within]), wide / STEPS)
-    return MovedRegion(
-        touched, _compact(piece, piece.triangles[~within]), inside, preview.shares(inside.xyz), preview.way
-    )
+    return MovedRegion(touched, _compact(piece, piece.triangles[~within]), inside, preview.shares(inside.xyz))
 
 
 def _overlap(low: Floats, high: Floats, least: Floats, most: Floats) -> Bools:

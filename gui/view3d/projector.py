@@ -64,6 +64,14 @@ class Projector:
         share = (z - near[2]) / drop
         return None if share < 0 else np.asarray(near + share * (far - near))
 
+    def in_picture_plane(self, start: Floats, by: tuple[float, float]) -> Floats | None:
+        """Return where ``start`` is after a move by pixels in the plane of the picture; None behind the viewpoint."""
+        column, row, depth = self.screen(start)[0].tolist()
+        x, y = 2 * (column + by[0]) / self.width - 1, 1 - 2 * (row + by[1]) / self.height
+        end = np.linalg.inv(self.matrix) @ np.array([x, y, 2 * depth - 1, 1.0])
+        place = end[:3] / end[3] / (1.0, 1.0, self.stretch) + self.origin
+        return np.asarray(place) if np.isfinite(place).all() else None
+
     def pulled(self, start: Floats, way: Floats, by: tuple[float, float]) -> float | None:
         """Return how far along ``way`` (3,) from ``start`` a hand that moves ``by`` pixels pulls something, in lengths.
 

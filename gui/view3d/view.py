@@ -59,7 +59,7 @@ class SceneView(QWidget):
     Call :meth:`close` before the window that holds it is destroyed: it stops the timers and frees OpenGL's memory.
 
     Signals: ``point_picked(horizon, row)``, ``control_picked(horizon, patch, i, j)``, ``hole_picked(name)``,
-    ``control_dragged(dz)``, ``control_dropped()`` and ``control_refused(reason)`` while the chosen control point is
+    ``control_dragged(vector)``, ``control_dropped()`` and ``control_refused(reason)`` while the chosen control point is
     dragged, ``pointer_moved(x, y, z)`` (nan off every surface), ``measured(text)``, ``section_changed(line)`` with a
     (k, 2) array, ``sharper_wanted(horizon, sight)`` where the view has come to rest so near to a surface that its
     triangles show: answer by :meth:`sharpen`.
@@ -72,7 +72,7 @@ class SceneView(QWidget):
 
     point_picked = Signal(str, object)
     control_picked = Signal(str, str, int, int)
-    control_dragged = Signal(float)
+    control_dragged = Signal(object)
     control_dropped = Signal()
     control_refused = Signal(str)
     hole_picked = Signal(str)
@@ -112,7 +112,7 @@ class SceneView(QWidget):
 
     def _connect(self) -> None:
         canvas = self.canvas
-        canvas.handle = Handles(self.handles, canvas.projector)
+        self._hands = canvas.handle = Handles(self.handles, canvas.projector)
         canvas.viewpoint_changed.connect(self._viewpoint_moved)
         canvas.detail_changed.connect(self._set_detail)
         canvas.pixels_changed.connect(self._stage.set_pixels)
@@ -257,10 +257,10 @@ class SceneView(QWidget):
         """Put a mark and its elevation on a control point."""
         self.pointer.choose_control(horizon, patch, i, j)
 
-    def _control_pulled(self, dz: float) -> None:
+    def _control_pulled(self, by: Floats) -> None:
         """Let the surface follow the hand; as while the viewpoint moves, less detail is drawn."""
         self.canvas.look(self.canvas.viewpoint, moving=True)
-        self.control_dragged.emit(dz)
+        self.control_dragged.emit(by)
 
     def _ring_changed(self) -> None:
         """Something else was chosen, or nothing: no control point can be dragged any more."""
@@ -401,7 +401,7 @@ class SceneView(QWidget):
         seen, pointer = list(self._stage.items()), self.pointer
         return Content(
             names=[(item.places, item.names) for _, item in seen],
-            rings=[self.control_move.dressed(pointer.ring)] if pointer.ring is not None else [],
+            rings=[self.control_move.dressed(pointer.ring, self._hands.free)] if pointer.ring is not None else [],
             path=np.array(pointer.measure.places) if pointer.measure.places else None,
             path_text=pointer.measure_text(),
             handles=[handle.xyz for handle in self.handles() if handle.drawn],

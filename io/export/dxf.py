@@ -8,6 +8,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from geofit.data.files import file_stems, replacing
+from geofit.data.lengths import LengthUnit
 from geofit.geometry.mesh import Mesh
 from geofit.sampling.contours import ContourLine
 from geofit.sampling.cut import CutLine
@@ -19,8 +20,8 @@ __all__ = ["drawing_of", "write_contours_dxf", "write_mesh_dxf", "write_section_
 
 #: Colour indices of AutoCAD for the horizons in turn: apart from each other on white and on black.
 COLOURS = (30, 84, 150, 14, 200, 42, 120, 220)
-#: DXF code of metres.
-METRES = 6
+#: DXF codes of the units of a drawing.
+UNITS: dict[LengthUnit, int] = {"m": 6, "ft": 2, "ft-us": 21}
 
 
 def write_contours_dxf(contours: Mapping[str, Sequence[ContourLine]], path: str | PathLike[str]) -> None:
@@ -90,8 +91,8 @@ def _drawing(path: str | PathLike[str], names: list[str]) -> Iterator[tuple[Draw
 
 
 @contextmanager
-def drawing_of(path: str | PathLike[str], layers: Sequence[str]) -> Iterator[Drawing]:
-    """Give a drawing in metres with layers; it is written when the block ends without an error."""
+def drawing_of(path: str | PathLike[str], layers: Sequence[str], unit: LengthUnit = "m") -> Iterator[Drawing]:
+    """Give a drawing in a unit with layers; it is written when the block ends without an error."""
     import ezdxf
 
     options: Any = ezdxf.options
@@ -99,7 +100,7 @@ def drawing_of(path: str | PathLike[str], layers: Sequence[str]) -> Iterator[Dra
     # Otherwise the time of writing and a random identifier are written in the header.
     options.write_fixed_meta_data_for_testing = True
     try:
-        document = ezdxf.new("R2010", units=METRES)
+        document = ezdxf.new("R2010", units=UNITS[unit])
         for k, layer in enumerate(layers):
             document.layers.add(layer, color=COLOURS[k % len(COLOURS)])
         yield document

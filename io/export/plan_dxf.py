@@ -8,6 +8,7 @@ from os import PathLike
 import numpy as np
 
 from geofit.data.files import file_stems
+from geofit.data.lengths import LengthUnit, in_unit
 from geofit.data.site import Site
 from geofit.io.export.dxf import drawing_of
 from geofit.sampling.contours import ContourLine
@@ -26,6 +27,8 @@ def write_plan_dxf(
     site: Site,
     title: str,
     path: str | PathLike[str],
+    *,
+    unit: LengthUnit = "m",
 ) -> None:
     """Write contour plans.
 
@@ -44,6 +47,8 @@ def write_plan_dxf(
         Written below the plan.
     path : path
         The file.
+    unit : {"m", "ft", "ft-us"}
+        That of the drawing.
 
     Raises
     ------
@@ -52,11 +57,14 @@ def write_plan_dxf(
     """
     names = file_stems([AREA, HOLES, SECTIONS, TEXT, *contours])
     layers = [layer for name in contours for layer in (names[name], f"{names[name]}_heavy", f"{names[name]}_labels")]
-    corners = [one.line for lines in contours.values() for one in lines] + [hole.xyz[:1, :2] for hole in site.holes]
+    contours = {name: in_unit(tuple(lines), unit) for name, lines in contours.items()}
+    intervals, area = in_unit(dict(intervals), unit), in_unit(site.boundary, unit)
+    sections, holes = in_unit(tuple(site.sections), unit), in_unit(tuple(site.holes), unit)
+    corners = [one.line for lines in contours.values() for one in lines] + [hole.xyz[:1, :2] for hole in holes]
     places = np.concatenate(corners) if corners else np.zeros((1, 2))
     low, high = places.min(axis=0), places.max(axis=0)
     size = LETTERS * max(float((high - low).max()), 1.0)
-    with drawing_of(path, [*layers, AREA, HOLES, SECTIONS, TEXT]) as document:
+    with drawing_of(path, [*layers, AREA, HOLES, SECTIONS, TEXT], unit) as document:
         space = document.modelspace()
         for name, lines in contours.items():
             for one in lines:
@@ -69,14 +77,14 @@ def write_plan_dxf(
                     k = len(one.line) // 2
                     way = one.line[k] - one.line[k - 1]
                     angle = (float(np.degrees(np.arctan2(way[1], way[0]))) + 90) % 180 - 90
-                    text = space.add_text(f"{one.elevation:g}", height=size,
+                    text = space.add_text(f"{round(one.elevation, 6):g}", height=size,
                                           dxfattribs={"layer": f"{names[name]}_labels", "rotation": angle})  # fmt: skip
                     text.set_placement((float(one.line[k, 0]), float(one.line[k, 1]), one.elevation))
-        if site.boundary is not None:
-            space.add_lwpolyline(np.asarray(site.boundary).tolist(), close=True, dxfattribs={"layer": AREA})
-        for section in site.sections:
+        if area is not None:
+            space.add_lwpolyline(np.asarray(area).tolist(), close=True, dxfattribs={"layer": AREA})
+        for section in sections:
             space.add_lwpolyline(section.line.tolist(), dxfattribs={"layer": SECTIONS})
-        for hole in site.holes:
+        for hole in holes:
             x, y, z = hole.xyz[0].tolist()
             space.add_circle((x, y, z), size / 2, dxfattribs={"layer": HOLES})
             name_text = space.add_text(hole.name, height=size, dxfattribs={"layer": HOLES})

@@ -1,4 +1,4 @@
-"""A section sheet as DXF (R2010): sections one below the other, x the distance and y the elevation, metres."""
+"""A section sheet as DXF (R2010): sections one below the other, x the distance and y the elevation."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.files import file_stems
+from geofit.data.lengths import LengthUnit, in_unit
 from geofit.io.export.dxf import drawing_of
 from geofit.site.section_view import HoleTrack, SectionView, lithologies
 
@@ -27,20 +28,26 @@ LETTERS, COLUMN = 0.008, 0.003
 
 
 def write_sheet_dxf(
-    views: Sequence[SectionView], title: str, path: str | PathLike[str], *, exaggeration: float = 1.0
+    views: Sequence[SectionView],
+    title: str,
+    path: str | PathLike[str],
+    *,
+    exaggeration: float = 1.0,
+    unit: LengthUnit = "m",
 ) -> None:
     """Write sections with ground, holes, lithology, bands and points.
 
     Layers: one a horizon, with ``_inferred`` (dashed: above the ground or beyond the data), ``_band`` and ``_points``;
     one a lithology code, ``LITH_code``; one a body, ``BODY_name``, with ``_band`` (dashed: between these lines its
-    surface lies with 80 % chance); GROUND, HOLES, FRAME, TEXT. Each section is drawn in true metres below the one
-    before it; ``exaggeration`` stretches elevations, and the title reports it.
+    surface lies with 80 % chance); GROUND, HOLES, FRAME, TEXT. Each section is drawn in true lengths below the
+    one before it, in metres or in feet; ``exaggeration`` stretches elevations, and the title reports it.
 
     Raises
     ------
     OSError
         If the file cannot be written.
     """
+    views = [in_unit(view, unit) for view in views]
     horizons = list(dict.fromkeys(name for view in views for name in (*view.traces, *view.points)))
     codes = lithologies(list(views))
     bodies = list(dict.fromkeys(f"BODY_{body.name}" for view in views for body in view.bodies))
@@ -48,7 +55,7 @@ def write_sheet_dxf(
     names = [stem + end for h in horizons for stem in (stems[h],) for end in ("", "_inferred", "_band", "_points")]
     names += [stems[f"LITH_{code}"] for code in codes]
     names += [stems[body] + end for body in bodies for end in ("", "_band")]
-    with drawing_of(path, [*names, GROUND, HOLES, FRAME, TEXT]) as document:
+    with drawing_of(path, [*names, GROUND, HOLES, FRAME, TEXT], unit) as document:
         document.linetypes.add("DASHED_SECTION", pattern=[9.0, 6.0, -3.0])
         space, drop = document.modelspace(), 0.0
         for view in views:

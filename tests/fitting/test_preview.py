@@ -53,8 +53,9 @@ def sample_fit(name):
     return geofit.fit_horizon(site.horizons[name], site.settings[name], boundary=site.boundary, name=name)
 
 
-def agrees(surface, control, dz):
-    effect, after = preview_move(surface, *control).effect(dz), adjust(surface, *control, dz).accuracy
+def agrees(surface, control, dz, aside=(0.0, 0.0, 0.0)):
+    effect = preview_move(surface, *control).effect(dz, aside)
+    after = adjust(surface, *control, dz, aside).accuracy
     np.testing.assert_allclose(effect.residuals, after.residuals, atol=1e-8)
     assert effect.sigma == pytest.approx(after.sigma, abs=1e-9)
     assert effect.max_abs == pytest.approx(after.max_abs, abs=1e-8)
@@ -141,3 +142,41 @@ def test_a_control_point_that_cannot_move_says_why():
     assert str(refused.value) == str(edited.value)
     with pytest.raises(FitError):
         preview_move(surface, "nowhere", 0, 0)
+
+
+@pytest.mark.parametrize("seed", [4, 5])
+def test_a_move_aside_has_the_figures_of_the_edit_and_moves_nothing_outside_its_support(seed):
+    surface, rng = fit_horizon(scattered(seed), FitSettings(core="none")), np.random.default_rng(seed)
+    for control in movable_points(surface, 3, seed):
+        preview = preview_move(surface, *control)
+        for size in (0.3, 8.0, 60.0):
+            aside = tuple((size * rng.normal(size=3) * (1.0, 1.0, 0.1)).tolist())
+            agrees(surface, control, 0.7, aside)
+        after = adjust(surface, *control, 0.0, (9.0, -4.0, 0.0))
+        patch, i, j = control
+        place = next(one.control[i, j] for one in after.patches if one.name == patch) + after.origin
+        np.testing.assert_allclose(place - preview.place, [9.0, -4.0, 0.0], atol=1e-6)
+        rim = preview.rim(0.0)
+        low, high = rim[:, :2].min(axis=0), rim[:, :2].max(axis=0)
+        xy = rng.uniform(surface.points.xyz[:, :2].min(axis=0), surface.points.xyz[:, :2].max(axis=0), (400, 2))
+        off = (xy < low - 20).any(axis=1) | (xy > high + 20).any(axis=1)
+        np.testing.assert_allclose(after.elevation(*xy[off].T), surface.elevation(*xy[off].T), atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["T3-T2", "F1"])
+def test_a_move_aside_on_a_core_s_neighbour_and_on_a_steep_fault(name):
+    surface = sample_fit(name)
+    for control in movable_points(surface, 2):
+        agrees(surface, control, 0.4, (2.0, 3.0, -0.5))
+        agrees(surface.adjust(*control, 0.4, (2.0, 3.0, -0.5)), control, -0.2, (0.0, 1.0, 0.0))
+
+
+def test_a_height_field_whose_control_point_moved_aside_is_not_pulled_to_points_there():
+    surface = fit_horizon(scattered(7), FitSettings(core="none"))
+    control = movable_points(surface, 1)[0]
+    after = adjust(surface, *control, 0.0, (5.0, 0.0, 0.0))
+    near = int(np.flatnonzero(acted_on(after, *control)[0])[0])
+    with pytest.raises(FitError, match="moved aside"):
+        after.move_to(near)
+    far = int(np.linalg.norm(after.points.xyz - after.points.xyz[near], axis=1).argmax())
+    assert abs(after.move_to(far).accuracy.residuals[far]) < 1e-6

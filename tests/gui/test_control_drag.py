@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from panel_samples import SITE, fitted, item_of, sample_site
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
+from PySide6.QtGui import QMouseEvent
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
 
 import geofit
 from geofit.data.errors import GeofitError
@@ -97,13 +99,26 @@ def choose(app, control):
     return view
 
 
-def press_and_pull(view, by):
-    """Press on the handle and pull it; return where the pointer is."""
+SHIFT, PLAIN = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.NoModifier
+
+
+def move(view, at, keys=PLAIN):
+    """Move the pointer with the left button down; QTest's own moves forget the keys that are held."""
+    place = QPointF(at)
+    event = QMouseEvent(
+        QEvent.Type.MouseMove, place, view.canvas.mapToGlobal(place), Qt.MouseButton.NoButton,
+        Qt.MouseButton.LeftButton, keys,
+    )  # fmt: skip
+    QApplication.sendEvent(view.canvas, event)
+
+
+def press_and_pull(view, by, aside=0, keys=SHIFT):
+    """Press on the handle and pull it, along the normal; return where the pointer is."""
     start = pixel(view, view.handles()[0].xyz)
     QTest.mousePress(view.canvas, Qt.MouseButton.LeftButton, pos=start)
     for share in (0.25, 0.5, 1.0):
-        QTest.mouseMove(view.canvas, start + QPoint(0, round(share * by)))
-    return start + QPoint(0, by)
+        move(view, start + QPoint(round(share * aside), round(share * by)), keys)
+    return start + QPoint(aside, by)
 
 
 def drop(app, at):
@@ -244,3 +259,89 @@ def test_a_surface_that_got_finer_triangles_is_cut_by_these(far):
     off = adjust(surface, *control, dz).elevation(*shape.xyz[:, :2].T) - shape.xyz[:, 2]
     assert np.nanmax(np.abs(off)) < 0.2 + 0.02 * dz
     drop(far, at)
+
+
+def moved_by(view):
+    """How far the chosen control point is from where it rests, east, north and up."""
+    return view.handles()[0].xyz - view.handles()[0].rest
+
+
+def test_a_free_drag_goes_where_the_pointer_goes_in_the_plane_of_the_view(far):
+    before, control = far.document.surface("H"), movable_near_a_point(far.document.surface("H"))
+    view = choose(far, control)
+    at = press_and_pull(view, -40, aside=50, keys=PLAIN)
+    by, panel = moved_by(view), far.window.panels.adjust
+    assert (pixel(view, view.handles()[0].xyz) - at).manhattanLength() <= 2
+    seen = view.canvas.projector().screen(np.stack([view.handles()[0].rest, view.handles()[0].xyz]))
+    assert seen[0, 2] == pytest.approx(seen[1, 2], abs=1e-6), "as far from the viewer as before"
+    assert np.abs(by[:2]).max() > 0.1
+    dz, aside = panel.control.dz.value(), panel.control.aside
+    np.testing.assert_allclose([*aside[:2], dz], by, atol=2e-3)
+    after = adjust(before, *control, dz, aside)
+    ring = view.content(view.canvas.projector()).rings[0]
+    assert f"{after.accuracy.sigma:.3g}"[:4] in ring.text
+    assert "aside" in ring.text
+    shape = view.control_move.drawn
+    off = np.abs(after.surface.distance(shape.xyz))
+    assert off.max() < 0.2 + 0.02 * np.linalg.norm(by)
+    drop(far, at)
+    edit = far.document.state.provenances["H"].edits[-1]
+    assert edit.aside == aside
+    assert far.document.surface("H").accuracy.sigma == pytest.approx(after.accuracy.sigma, abs=1e-12)
+    far.desktop.session.stack.undo()
+    far.idle()
+    assert view.handles()[0].xyz == pytest.approx(place_of(before, *control), abs=1e-9)
+
+
+@pytest.mark.parametrize(("key", "axis"), [(Qt.Key.Key_X, 0), (Qt.Key.Key_Y, 1), (Qt.Key.Key_Z, 2)])
+def test_a_key_locks_the_drag_to_an_axis_and_frees_it(far, key, axis):
+    view = choose(far, movable_near_a_point(far.document.surface("H")))
+    at = press_and_pull(view, -35, aside=45, keys=PLAIN)
+    QTest.keyClick(view.canvas, key)
+    by = moved_by(view)
+    assert abs(by[axis]) > 0.05
+    assert np.abs(np.delete(by, axis)).max() < 1e-6
+    assert "XYZ"[axis] in view.content(view.canvas.projector()).rings[0].text
+    QTest.keyClick(view.canvas, key)
+    assert np.abs(moved_by(view)).min() > 1e-3, "free again"
+    QTest.keyClick(view.canvas, Qt.Key.Key_Escape)
+    drop(far, at)
+    assert not far.document.state.provenances["H"].edits
+
+
+def test_figures_that_are_typed_while_dragging_are_the_length_of_the_move(far):
+    control = movable_near_a_point(far.document.surface("H"))
+    view, steps = choose(far, control), far.desktop.session.stack.count()
+    at = press_and_pull(view, -20, keys=PLAIN)
+    QTest.keyClick(view.canvas, Qt.Key.Key_Z)
+    for letter in "-1.2":
+        QTest.keyClick(view.canvas, letter)
+    QTest.keyClick(view.canvas, "5")
+    assert moved_by(view) == pytest.approx([0, 0, -1.25], abs=1e-9)
+    assert "-1.25" in view.content(view.canvas.projector()).rings[0].text
+    QTest.keyClick(view.canvas, Qt.Key.Key_Backspace)
+    assert moved_by(view) == pytest.approx([0, 0, -1.2], abs=1e-9)
+    move(view, at + QPoint(40, 40))
+    assert moved_by(view) == pytest.approx([0, 0, -1.2], abs=1e-9), "the hand does not change what was typed"
+    QTest.keyClick(view.canvas, Qt.Key.Key_Return)
+    far.idle()
+    assert far.desktop.session.stack.count() == steps + 1
+    edit = far.document.state.provenances["H"].edits[-1]
+    assert (edit.dz, edit.aside) == (-1.2, (0.0, 0.0, 0.0))
+    drop(far, at)
+    assert far.desktop.session.stack.count() == steps + 1, "the release after Enter does nothing more"
+
+
+def test_an_edit_aside_comes_back_after_saving_and_opening(far, tmp_path):
+    control = movable_near_a_point(far.document.surface("H"))
+    view = choose(far, control)
+    panel = far.window.panels.adjust
+    panel.control.sideways[0].setValue(3.0)
+    assert moved_by(view) == pytest.approx([3.0, 0, 0], abs=1e-9)
+    assert panel.apply_button.isEnabled()
+    panel.apply_button.click()
+    far.idle()
+    provenance = far.document.state.provenances["H"]
+    assert provenance.edits[-1].aside == (3.0, 0.0, 0.0)
+    assert type(provenance).from_data(provenance.to_data()) == provenance
+    assert "aside" in str(far.desktop.session.stack.undoText())

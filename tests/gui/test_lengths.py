@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import pytest
-from panel_samples import WITH_PERIPHERY, fitted
+from panel_samples import SITE, WITH_PERIPHERY, fitted, sample_site
 from PySide6.QtWidgets import QDialog
 
 from geofit.gui.dialogs.preferences import PreferencesDialog
-from geofit.gui.lengths import in_lengths, in_title, show_lengths_in, shown_length
+from geofit.gui.lengths import count_coordinates_in, in_lengths, in_title, show_lengths_in, shown_length
 from geofit.gui.panels.residuals import ResidualTable
 from geofit.gui.panels.verdict import VerdictBadge
 from geofit.gui.preferences import Preferences
@@ -22,6 +23,7 @@ FOOT, SURVEY = 0.3048, 1200 / 3937
 def metres_again():
     yield
     show_lengths_in("m")
+    count_coordinates_in(None)
 
 
 @pytest.mark.parametrize(
@@ -119,3 +121,42 @@ def test_axes_have_round_numbers_in_feet(qtbot):
     assert other == "points"
     assert all(float(text) % 100 == 0 for text in texts)
     assert places == pytest.approx([float(text) * FOOT for text in texts])
+
+
+@pytest.mark.parametrize(
+    ("shown", "grid", "text"),
+    [
+        ("m", "ft-us", "E 6000000.00  N 2000000.00 ft  Z -30.48 m\nresidual +0.305 m"),
+        ("ft", "ft-us", "E 6000000.00  N 2000000.00  Z -100.00 ft\nresidual +1.001 ft"),
+        ("ft", None, "E 6000012.00  N 2000004.00  Z -100.00 ft\nresidual +1.001 ft"),
+    ],
+)
+def test_places_are_in_the_unit_of_the_grid(shown, grid, text):
+    show_lengths_in(shown)
+    count_coordinates_in(grid)
+    east, north = 6_000_000 * SURVEY, 2_000_000 * SURVEY
+    assert in_lengths(f"E {east:.4f}  N {north:.4f}  Z -30.48 m\nresidual +0.305 m").replace(".0000", ".00") == text
+    assert in_title("Easting, m", coordinate=True) == ("Easting, ft")
+    assert in_title("Elevation, m") == f"Elevation, {shown}"
+
+
+def test_a_site_whose_grid_counts_in_feet_has_its_coordinates_in_them(app):
+    pytest.importorskip("pyproj")
+    site = sample_site()
+    app.desktop.session.begin(replace(site, crs="EPSG:2227"), SITE)
+    app.idle()
+    app.window.bar.show_place(6_000_000 * SURVEY, 2_000_000 * SURVEY, 30.0)
+    assert app.window.bar.place.text() == "E 6000000.00   N 2000000.00 ft   Z 30.00 m"
+    view = app.window.panels.view
+    view.view("top")
+    view.canvas.land()
+    app.qtbot.wait(50)
+    marks = [mark.text for mark in view.content(view.canvas.projector()).marks]
+    east = site.horizons["T3-T2"].xyz[:, 0] / SURVEY
+    numbers = [float(re.sub(r"\D", "", text)) for text in marks if text.startswith("E ")]
+    assert numbers
+    assert all(east.min() - 5000 < number < east.max() + 5000 for number in numbers)
+    app.desktop.session.begin(replace(site, crs="EPSG:32650"), SITE)
+    app.idle()
+    app.window.bar.show_place(304.8, 609.6, 30.48)
+    assert app.window.bar.place.text() == "E 304.80   N 609.60   Z 30.48 m"

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
+import numpy as np
 import pypdfium2
 import pytest
 from panel_samples import SITE, fitted, sample_site
 from PySide6.QtCore import Qt
 
 from geofit.gui.dialogs.section_sheet import SectionSheetDialog
+from geofit.gui.lengths import show_lengths_in
 from geofit.project.commands import SetSurface
 
 NAME = "T3-T2"
@@ -111,3 +115,54 @@ def test_a_contour_plan_with_an_interval_of_ones_own(shown, qtbot, tmp_path, mon
     assert "contours every 4 m" in words
     assert (tmp_path / "plan.dxf").is_file()
     assert str(tmp_path / "plan.pdf") in said[0]
+
+
+@pytest.fixture
+def in_feet():
+    show_lengths_in("ft")
+    yield
+    show_lengths_in("m")
+
+
+def test_sheets_and_plans_are_in_feet_where_the_window_is(shown, qtbot, tmp_path, in_feet):
+    import ezdxf
+
+    from geofit.gui.dialogs.plan_sheet import PlanSheetDialog
+
+    site, surfaces = shown.document.site, shown.document.surfaces()
+    dialog = opened(shown, qtbot, tmp_path)
+    assert dialog.thickness.value() == pytest.approx(50 / 0.3048, abs=0.05)
+    assert "1 in = 100 ft" in dialog.scale.itemText(dialog.scale.findData(1200))
+    plan = PlanSheetDialog(site, surfaces, NAME, tmp_path)
+    qtbot.addWidget(plan)
+    plan.show()
+    plan.interval.setValue(20.0)
+    words, drawings = {}, {}
+    for one, name in ((dialog, "sections"), (plan, "plan")):
+        one.forms["dxf"].setChecked(True)
+        one.forms["svg"].setChecked(True)
+        one.target.setText(str(tmp_path / name))
+        qtbot.mouseClick(one.go, Qt.MouseButton.LeftButton)
+        qtbot.waitUntil(lambda one=one: not one.running, timeout=120_000)
+        assert (tmp_path / f"{name}.svg").is_file(), one.message.text()
+        pdf = pypdfium2.PdfDocument(tmp_path / f"{name}.pdf")
+        words[name] = pdf[0].get_textpage().get_text_range()
+        pdf.close()
+        drawings[name] = ezdxf.readfile(tmp_path / f"{name}.dxf")
+        assert drawings[name].units == 2, "feet"
+        assert "1 in = " in words[name]
+    assert "Elevation, ft" in words["sections"]
+    assert "Distance along the section, ft" in words["sections"]
+    assert "contours every 20 ft" in words["plan"]
+    assert "Easting, ft" in words["plan"]
+    for text in words.values():
+        assert not re.search(r"\d\s?m\b|, m\b", text), "no metres are left"
+    levels = {
+        round(one.dxf.elevation, 3) for one in drawings["plan"].modelspace().query("LWPOLYLINE")
+        if one.dxf.layer.startswith(NAME) and one.dxf.elevation
+    }  # fmt: skip
+    assert levels
+    assert all(level % 20 == 0 for level in levels)
+    length = np.linalg.norm(np.diff(shown.window.showing.line, axis=0), axis=1).sum() / 0.3048
+    frame = next(one for one in drawings["sections"].modelspace().query("LWPOLYLINE") if one.dxf.layer == "FRAME")
+    assert np.ptp([point[0] for point in frame.get_points()]) == pytest.approx(length, rel=1e-6)

@@ -50,7 +50,7 @@ def test_the_page_has_its_size_its_scale_and_the_names_of_the_holes(tmp_path, la
 def test_a_metre_is_a_thousand_millimetres_over_the_scale(monkeypatch, tmp_path):
     drawn = {}
 
-    def note(axes, given, interval, wide, t):
+    def note(axes, given, interval, wide, t, unit, grid):
         box = axes.get_position()
         figure = axes.get_figure()
         drawn["mm"] = np.array([box.width, box.height]) * figure.get_size_inches() * 25.4
