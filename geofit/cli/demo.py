@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -29,14 +30,19 @@ def demo(
     as_json: Json = False,
 ) -> int:
     """Fit every horizon of the sample site, a fictional dam site, and the ore lens below it."""
-    from geofit.io.site_file import load_site, read_site
-    from geofit.project.body_run import run_body
+    from geofit.project.side_by_side import available, crew
 
-    site_file = _sample(out)
-    with listening() as progress:
+    # Before anything else is imported here: the processes import what they need meanwhile.
+    with listening() as progress, crew(available()) as hands:
+        from geofit.io.site_file import load_site, read_site
+        from geofit.project.body_run import run_body
+
+        site_file = _sample(out)
         site = read_site(site_file)
-        code = run_site(site, out, (), {"robust": True} if robust else {}, as_json, progress)
-        run = run_body(load_site(site_file.with_name("bodies.toml")), out / "bodies", codes=BODY, progress=progress)
+        lens = load_site(site_file.with_name("bodies.toml"))
+        begun = hands.begin(partial(run_body, lens, out / "bodies", codes=BODY))
+        code = run_site(site, out, (), {"robust": True} if robust else {}, as_json, progress, hands=hands)
+        run = begun()
     if not as_json:
         print_body(run)
     say(f"Body {BODY}: {len(run.files)} files in {out / 'bodies'}")

@@ -49,6 +49,7 @@ def report(
     """Fit every horizon of a site and write its accuracy report (HTML, PDF, JSON) with the surfaces it is about."""
     from geofit.data.languages import language
     from geofit.data.title_block import Revision
+    from geofit.project.side_by_side import available, crew
     from geofit.report.gather import today
 
     stated = {
@@ -61,7 +62,7 @@ def report(
         "checker": checker,
         "approver": approver,
     }
-    with listening() as progress:
+    with listening() as progress, crew(1 if len(horizon or ()) == 1 else available()) as hands:
         read = read_source(site, {}, None)
         changes: dict[str, Any] = {key: text for key, text in stated.items() if text is not None}
         title = replace(read.title, **changes)
@@ -73,4 +74,6 @@ def report(
         read = replace(read, title=title)
         names = tuple(horizon or ())
         bodies = tuple(body or ())
-        return run_site(read, out, names, {}, as_json, progress, language(lang.value), pdf=True, bodies=bodies)
+        return run_site(
+            read, out, names, {}, as_json, progress, language(lang.value), pdf=True, bodies=bodies, hands=hands
+        )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -27,6 +28,7 @@ from geofit.streaming.executors import HERE, Where
 
 if TYPE_CHECKING:
     from geofit.report.accuracy_report import AccuracyReport
+    from geofit.fitting.horizon_fit import HorizonFit
     from geofit.report.document import Chapter
     from geofit.report.pictures import Pictures
     from geofit.site.fit_site import SiteFit
@@ -85,6 +87,8 @@ def run_horizons(
     bodies: Sequence[str] = (),
     workers: int = 1,
     signed: Signed | None = None,
+    hands: Crew | None = None,
+    fitted: Callable[[HorizonFit], None] | None = None,
 ) -> RunResult:
     """Fit horizons of a site, examine them, and write everything that belongs to them.
 
@@ -123,6 +127,10 @@ def run_horizons(
         script that asks for more needs the guard ``if __name__ == "__main__"``.
     signed : Signed, optional
         What the STEP files state, and whether they get a certificate; by default author and organisation of the site.
+    hands : Crew, optional
+        Processes that are at work already; by default the run starts its own ``workers``.
+    fitted : callable, optional
+        Called with each surface as soon as it is fitted and checked, long before it is examined.
 
     Raises
     ------
@@ -143,15 +151,17 @@ def run_horizons(
     # Also when there is nothing to list: a file of an earlier run would mislead.
     folder_for(out)
     _write_issues(site, out, language)
-    with crew(min(workers, len(names))) as hands:
+    with crew(min(workers, len(names))) if hands is None else nullcontext(hands) as ours:
         listen = _within(progress, 0.0, FITS)
-        fits = fit_site(site, names, changes, listen, separate=separate, scheduler=scheduler, workers=workers)
+        fits = fit_site(
+            site, names, changes, listen, separate=separate, scheduler=scheduler, workers=workers, fitted=fitted
+        )
         # Horizons are examined side by side already; of one alone, and on other machines, the folds are.
         apart = scheduler is not None and (scheduler != "local" or len(fits.surfaces) == 1)
         where = Where(scheduler or "local", workers) if apart else HERE
         stated = signed or Signed(site.title.author, site.title.organisation)
         stated = stated.about(_corners(site, fits))
-        return _write_results(site, fits, out, hands, progress, language, date, pdf, bands, bodies, where, stated)
+        return _write_results(site, fits, out, ours, progress, language, date, pdf, bands, bodies, where, stated)
 
 
 def _corners(site: Site, fits: SiteFit) -> list[NDArray[np.float64]]:

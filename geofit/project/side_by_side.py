@@ -7,7 +7,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import TypeVar
@@ -24,8 +24,9 @@ T = TypeVar("T")
 HEAVY = (
     "geofit.cad.step", "geofit.cad.read_back", "geofit.cad.sewing", "geofit.prediction.examine",
     "geofit.report.pictures", "geofit.report.section_sheet", "geofit.report.contour_plan",
-    "geofit.checks.storage", "cadquery", "pyvista", "matplotlib.backends.backend_agg", "matplotlib.figure",
-    "scipy.optimize", "scipy.spatial", "shapely",
+    "geofit.checks.storage", "geofit.report.schema", "geofit.report.tables", "OCP.BRepBuilderAPI", "pyvista.plotting",
+    "vtkmodules.vtkViewsCore", "matplotlib.backends.backend_agg", "matplotlib.figure", "scipy.optimize",
+    "scipy.spatial", "shapely",
 )  # fmt: skip
 #: Seconds between two looks at Cancel.
 LOOK = 0.1
@@ -43,6 +44,32 @@ class Crew:
 
     def __init__(self, pool: ProcessPoolExecutor | None) -> None:
         self._pool = pool
+        # Tasks are handed over by a thread: whoever starts the first process waits until all is imported there.
+        self._giver = ThreadPoolExecutor(1, "crew")
+
+    def begin(self, task: Callable[[], T]) -> Callable[[], T]:
+        """Begin one task now, and return a function that waits for its result; without processes it does the task.
+
+        Parameters
+        ----------
+        task : callable
+            As for :meth:`do`. What it raises, the function that is returned raises.
+        """
+        if self._pool is None:
+            return task
+        given = self._giver.submit(self._pool.submit, task)
+
+        def result() -> T:
+            try:
+                return given.result().result()
+            except BrokenProcessPool:
+                return task()
+
+        return result
+
+    def leave(self) -> None:
+        """Hand over no more tasks."""
+        self._giver.shutdown(wait=False, cancel_futures=True)
 
     def do(
         self, tasks: Sequence[Callable[[], T]], progress: Progress | None, stage: str | Message = ""
@@ -74,7 +101,7 @@ class Crew:
         broken: list[int] = []
         for i, task in enumerate(tasks):
             try:
-                pending[self._pool.submit(task)] = i
+                pending[self._giver.submit(self._pool.submit, task).result()] = i
             except BrokenProcessPool:
                 broken.append(i)
         while pending:
@@ -105,13 +132,16 @@ def crew(size: int) -> Iterator[Crew]:
     if sys.platform.startswith("linux"):
         context.set_forkserver_preload(list(HEAVY))
     pool = ProcessPoolExecutor(size, mp_context=context, initializer=_begin)
+    hands = Crew(pool)
     try:
         for _ in range(size):
-            pool.submit(_ready)
-        yield Crew(pool)
+            hands.begin(_ready)
+        yield hands
     except BaseException:
+        hands.leave()
         pool.shutdown(wait=False, cancel_futures=True)
         raise
+    hands.leave()
     pool.shutdown()
 
 

@@ -146,10 +146,10 @@ def certified(
     MissingDependencyError
         If the certificate is in Chinese and the machine has no font for it.
     """
-    from geofit.report.certificate import write_certificate
-
     if not by.certificate:
         return None
+    from geofit.report.certificate import write_certificate
+
     page = path.with_name(f"{path.stem}_certificate.pdf")
     write_certificate(
         page, path, found, epsilon, language(by.certificate), author=by.author, organisation=by.organisation,

@@ -233,5 +233,5 @@ def png(figure: Figure, margin: int = 0) -> bytes:
     if drawn.size:
         pixels = pixels[max(drawn[0] - margin, 0) : drawn[-1] + 1 + margin]
     stream = io.BytesIO()
-    Image.fromarray(pixels).save(stream, format="PNG", compress_level=6)
+    Image.fromarray(pixels).save(stream, format="PNG", compress_level=4)
     return stream.getvalue()

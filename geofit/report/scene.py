@@ -50,6 +50,8 @@ SHEER = 0.55
 LEAST_HEIGHT, MOST_RAISED = 0.14, 5
 #: Pores of a network are drawn so much smaller, so that the throats are seen.
 BALL = 0.6
+#: Pixels around what is drawn, for points and lines that are wider than their places.
+AROUND = 16
 #: Direction of the viewpoint: from the south-west, above.
 VIEWPOINT = (-0.5, -0.8, 0.62)
 
@@ -331,6 +333,7 @@ def _image(
     plotter.enable_anti_aliasing("ssaa")
     plotter.reset_camera()
     plotter.camera.zoom(1.0 if boxed else 1.15)
+    _narrow(plotter, boxed=boxed)
     image = np.asarray(plotter.screenshot(return_img=True))[..., :3]
     to_pixels = _projection(plotter, image.shape[:2], place)
     plotter.close()
@@ -348,14 +351,42 @@ def _image(
     return Scene(image[first[1] : last[1], first[0] : last[0]].copy(), raised, limits, low, high, to_pixels)
 
 
-def _projection(plotter: pyvista.Plotter, shape: tuple[int, ...], place: _Place) -> Floats:
-    """Return the (2, 4) matrix from map coordinates to columns and rows of a parallel projection."""
+def _narrow(plotter: pyvista.Plotter, *, boxed: bool) -> None:
+    """Make the window as small as what is drawn in it, at the same scale: all else would be drawn as well, and cut off.
+
+    Without room for the box nothing beyond the window as it was is kept.
+    """
+    camera = plotter.camera
+    wide, tall = plotter.window_size
+    right, up = _across(plotter)
+    corners = np.stack(np.meshgrid(*np.reshape(plotter.bounds, (3, 2))), axis=-1).reshape(-1, 3)
+    scale = tall / (2 * camera.parallel_scale)
+    flat = (corners - np.asarray(camera.focal_point)) @ np.stack([right, up], axis=1) * scale
+    low, high = flat.min(axis=0) - AROUND, flat.max(axis=0) + AROUND
+    if not boxed:
+        half = np.array([wide, tall]) / 2
+        low, high = np.maximum(low, -half), np.minimum(high, half)
+    size = np.ceil(high - low).astype(int)
+    move = ((low + high) / 2 / scale) @ np.stack([right, up])
+    camera.position, camera.focal_point = np.asarray(camera.position) + move, np.asarray(camera.focal_point) + move
+    camera.parallel_scale = size[1] / (2 * scale)
+    plotter.window_size = size.tolist()
+
+
+def _across(plotter: pyvista.Plotter) -> tuple[Floats, Floats]:
+    """Return the directions that are right and up in the picture."""
     camera = plotter.camera
     back = np.subtract(camera.position, camera.focal_point)
     back = back / np.linalg.norm(back)
     right = np.cross(camera.up, back)
     right /= np.linalg.norm(right)
-    up = np.cross(back, right)
+    return right, np.cross(back, right)
+
+
+def _projection(plotter: pyvista.Plotter, shape: tuple[int, ...], place: _Place) -> Floats:
+    """Return the (2, 4) matrix from map coordinates to columns and rows of a parallel projection."""
+    camera = plotter.camera
+    right, up = _across(plotter)
     tall, wide = shape
     scale = tall / (2 * camera.parallel_scale)
     linear = np.stack([right, -up]) * scale

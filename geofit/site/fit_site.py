@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import combinations
@@ -65,6 +65,7 @@ def fit_site(
     separate: bool = False,
     scheduler: str | None = None,
     workers: int | None = None,
+    fitted: Callable[[HorizonFit], None] | None = None,
 ) -> SiteFit:
     """Fit horizons of a site, and ask of each what the dips and the ground of the site say.
 
@@ -83,6 +84,8 @@ def fit_site(
     scheduler, workers : str, int, optional
         Where the horizons are fitted, side by side (:func:`geofit.streaming.executors.run_tasks`); by default one after
         the other in this process. The surfaces are the same.
+    fitted : callable, optional
+        Called with each surface as soon as it is fitted and checked, before the others are.
 
     Returns
     -------
@@ -105,9 +108,9 @@ def fit_site(
     require_kind("site", site, Site, SITE)
     names = tuple(names) or tuple(site.horizons)
     if scheduler is None:
-        found = _one_by_one(site, names, changes or {}, progress)
+        found = _one_by_one(site, names, changes or {}, progress, fitted or _deaf)
     else:
-        found = _side_by_side(site, names, changes or {}, progress, scheduler, workers)
+        found = _side_by_side(site, names, changes or {}, progress, fitted or _deaf, scheduler, workers)
     if separate:
         tell(progress, "separation", 1.0)
         _separate_horizons(site, found)
@@ -118,7 +121,17 @@ def fit_site(
     return found
 
 
-def _one_by_one(site: Site, names: Sequence[str], changes: Mapping[str, Any], progress: Progress | None) -> SiteFit:
+def _deaf(surface: HorizonFit) -> None:
+    """Hear nothing."""
+
+
+def _one_by_one(
+    site: Site,
+    names: Sequence[str],
+    changes: Mapping[str, Any],
+    progress: Progress | None,
+    fitted: Callable[[HorizonFit], None] = _deaf,
+) -> SiteFit:
     fits, found = _Fits(site, changes), SiteFit()
     for k, name in enumerate(names):
 
@@ -132,7 +145,10 @@ def _one_by_one(site: Site, names: Sequence[str], changes: Mapping[str, Any], pr
         def failed(reason: Message, name: str = name) -> None:
             found.failures[name] = reason
 
+        known = set(found.surfaces)
         guarded(partial(fits.add, name, found, listen), None, failed)
+        for surface in [one for title, one in found.surfaces.items() if title not in known]:
+            fitted(surface)
     return found
 
 
@@ -141,6 +157,7 @@ def _side_by_side(
     names: Sequence[str],
     changes: Mapping[str, Any],
     progress: Progress | None,
+    fitted: Callable[[HorizonFit], None],
     scheduler: str,
     workers: int | None,
 ) -> SiteFit:
@@ -149,6 +166,8 @@ def _side_by_side(
     parts: dict[int, SiteFit] = {}
     for k, part in run_tasks(_fitted_alone, tasks, scheduler, workers):
         parts[k] = part
+        for surface in part.surfaces.values():
+            fitted(surface)
         text = message("data.stage-of-name", "{name}: {stage}", name=names[k], stage="done")
         tell(progress, text, len(parts) / len(names))
     found = SiteFit()

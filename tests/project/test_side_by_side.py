@@ -43,6 +43,28 @@ def test_an_error_of_a_task_is_raised_here(size):
         list(hands.do([partial(square, 2), partial(refuse, 1)], None))
 
 
+@pytest.mark.parametrize("size", [1, 2])
+def test_a_task_begun_alone_gives_its_result_or_error_when_it_is_asked_for(size):
+    with crew(size) as hands:
+        good, bad, killed = (
+            hands.begin(partial(square, 3)), hands.begin(partial(refuse, 1)), hands.begin(partial(vanish, 4, os.getpid()))
+        )  # fmt: skip
+        assert good() == 9
+        with pytest.raises(InputError, match="bad"):
+            bad()
+        assert killed() == 4
+
+
+def test_no_task_waits_for_what_the_processes_import():
+    """The first process begins when all is imported, seconds later."""
+    since = time.perf_counter()
+    with crew(2) as hands:
+        begun = hands.begin(partial(square, 3))
+        handed_over = time.perf_counter() - since
+        assert begun() == 9
+    assert handed_over < 0.5 * (time.perf_counter() - since)
+
+
 def test_cancel_stops_at_once():
     since = time.perf_counter()
     with pytest.raises(Cancelled), crew(2) as hands:
