@@ -27,8 +27,8 @@ from geofit.report.result import HorizonResult
 from geofit.streaming.executors import HERE, Where
 
 if TYPE_CHECKING:
-    from geofit.report.accuracy_report import AccuracyReport
     from geofit.fitting.horizon_fit import HorizonFit
+    from geofit.report.accuracy_report import AccuracyReport
     from geofit.report.document import Chapter
     from geofit.report.pictures import Pictures
     from geofit.site.fit_site import SiteFit

@@ -46,9 +46,8 @@ def test_an_error_of_a_task_is_raised_here(size):
 @pytest.mark.parametrize("size", [1, 2])
 def test_a_task_begun_alone_gives_its_result_or_error_when_it_is_asked_for(size):
     with crew(size) as hands:
-        good, bad, killed = (
-            hands.begin(partial(square, 3)), hands.begin(partial(refuse, 1)), hands.begin(partial(vanish, 4, os.getpid()))
-        )  # fmt: skip
+        good, bad = hands.begin(partial(square, 3)), hands.begin(partial(refuse, 1))
+        killed = hands.begin(partial(vanish, 4, os.getpid()))
         assert good() == 9
         with pytest.raises(InputError, match="bad"):
             bad()
