@@ -124,8 +124,16 @@ def edges_with_faces(shape: Any) -> list[tuple[Any, list[Any]]]:
     for k in range(1, table.Extent() + 1):
         edge = TopoDS.Edge_s(table.FindKey(k))
         if not BRep_Tool.Degenerated_s(edge):
-            found.append((edge, [TopoDS.Face_s(face) for face in table.FindFromIndex(k)]))
+            found.append((edge, _faces_in(table.FindFromIndex(k))))
     return found
+
+
+def _faces_in(shapes: Any) -> list[Any]:
+    """Return the faces of a list of OpenCASCADE's; its iterator takes 0.4 ms to begin, most lists hold one or two."""
+    from OCP.TopoDS import TopoDS
+
+    few = {1: (shapes.First,), 2: (shapes.First, shapes.Last)}.get(shapes.Extent())
+    return [TopoDS.Face_s(face) for face in (shapes if few is None else (one() for one in few))]
 
 
 def free_edges(shape: Any) -> list[Any]:

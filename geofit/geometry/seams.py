@@ -43,7 +43,7 @@ def seams(patches: Sequence[Patch], samples: int = SAMPLES) -> tuple[Seam, ...]:
         between the normals in degrees (0 to 180; an edge whose normal vanishes is left out of it).
     """
     edges = [(index, edge) for index in range(len(patches)) for edge in EDGES]
-    marks = np.array([_edge(patches[index], edge, np.linspace(0, 1, 5)) for index, edge in edges]).reshape(-1, 5, 3)
+    marks = np.array([_rims(patch, np.linspace(0, 1, 5)) for patch in patches]).reshape(-1, 5, 3)
     # How far a patch reaches away from its edge: from one middle to the other.
     middle = marks[:, 2].reshape(-1, 2, 2, 3)
     width = np.repeat(np.linalg.norm(middle[:, :, 0] - middle[:, :, 1], axis=-1).ravel(), 2)
@@ -72,6 +72,14 @@ def _together(a: Floats, b: Floats, reach: float) -> bool | None:
     return None
 
 
+def _rims(patch: Patch, share: Floats) -> Floats:
+    """Return places on the four edges (4, n, 3) of a patch."""
+    u0, u1, v0, v1 = patch.domain
+    along = patch.evaluate([[u0], [u1]], (v0 + share * (v1 - v0))[None])
+    across = patch.evaluate((u0 + share * (u1 - u0))[:, None], [[v0, v1]])
+    return np.concatenate([along, across.swapaxes(0, 1)])
+
+
 def _edge(patch: Patch, edge: str, share: Floats, du: int = 0, dv: int = 0) -> Floats:
     u0, u1, v0, v1 = patch.domain
     if edge[0] == "u":
@@ -84,16 +92,15 @@ def _edge(patch: Patch, edge: str, share: Floats, du: int = 0, dv: int = 0) -> F
 def _measure(first: Patch, edge_a: str, second: Patch, edge_b: str, turned: bool, samples: int) -> Seam:
     share = np.linspace(0, 1, samples)
     a = _edge(first, edge_a, share)
-    other = _nearest(second, edge_b, 1 - share if turned else share, a)
-    gap = np.linalg.norm(_edge(second, edge_b, other) - a, axis=1).max()
+    other, apart = _nearest(second, edge_b, 1 - share if turned else share, a)
     normal_a, normal_b = _normal(first, edge_a, share), _normal(second, edge_b, other)
     angle = np.arctan2(np.linalg.norm(np.cross(normal_a, normal_b), axis=1), np.einsum("nk,nk->n", normal_a, normal_b))
     known = (np.linalg.norm(normal_a, axis=1) > 0) & (np.linalg.norm(normal_b, axis=1) > 0)
-    return Seam(first.name, second.name, float(gap), float(np.degrees(angle[known].max(initial=0.0))))
+    return Seam(first.name, second.name, float(apart.max()), float(np.degrees(angle[known].max(initial=0.0))))
 
 
-def _nearest(patch: Patch, edge: str, share: Floats, target: Floats) -> Floats:
-    """Gauss-Newton along an edge to the nearest place, as shares of its parameter range."""
+def _nearest(patch: Patch, edge: str, share: Floats, target: Floats) -> tuple[Floats, Floats]:
+    """Gauss-Newton along an edge to the nearest place, as shares of its parameter range; return also how far it is."""
     u0, u1, v0, v1 = patch.domain
     width, order = (v1 - v0, (0, 1)) if edge[0] == "u" else (u1 - u0, (1, 0))
     best, least = share, np.linalg.norm(_edge(patch, edge, share) - target, axis=1)
@@ -107,7 +114,7 @@ def _nearest(patch: Patch, edge: str, share: Floats, target: Floats) -> Floats:
         if not nearer.any():
             break
         best, least = np.where(nearer, share, best), np.minimum(distance, least)
-    return best
+    return best, least
 
 
 def _normal(patch: Patch, edge: str, share: Floats) -> Floats:

@@ -100,10 +100,10 @@ def basis(knots: Floats, degree: int, x: ArrayLike, derivative: int = 0) -> tupl
         return first, np.zeros((len(x), degree + 1))
     low = degree - derivative
     values = np.ones((len(x), 1))
+    around = knots[span[:, None] + np.arange(1 - degree, degree + 1)]
     for p in range(1, degree + 1):
         # One degree up: N_{i,p} from N_{i,p-1}; i runs over the p + 1 functions of the span.
-        at = span[:, None] + np.arange(1, p + 1)
-        left, right = knots[at - p], knots[at]
+        left, right = around[:, degree - p : degree], around[:, degree : degree + p]
         width = right - left
         ratio = np.divide(values, width, out=np.zeros_like(values), where=width > 0)
         raised = np.zeros((len(x), p + 1))
