@@ -44,6 +44,7 @@ from geofit.project.body_sources import outline_layers, site_codes
 from geofit.project.horizon_body import needed_horizons
 from geofit.project.provenance import Provenance
 from geofit.project.step_files import Signed
+from geofit.report.digits import length, volume
 
 __all__ = ["Bodies"]
 
@@ -180,15 +181,15 @@ class Bodies(QObject):
         self.showing.chosen = name
         self.showing.renew()
         a, verdict = result.accuracy, result.verdict
-        text = message("gui.log-body-volume", "{name}: {volume:.6g} m³", name=name, volume=result.mesh.volume)
+        text = message("gui.log-body-volume", "{name}: {volume}", name=name, volume=volume(result.mesh.volume))
         if a is not None and verdict is not None:
             text = message(
                 "gui.log-body-fitted",
-                "{name}: {verdict}, σ {sigma:.3g} m, {volume:.6g} m³, violations: {count}",
+                "{name}: {verdict}, σ {sigma}, {volume}, violations: {count}",
                 name=name,
                 verdict=verdict.word,
-                sigma=a.sigma,
-                volume=result.mesh.volume,
+                sigma=length(a.sigma),
+                volume=volume(result.mesh.volume),
                 count=len(result.violations),
             )
         _LOG.info(text)

@@ -23,6 +23,8 @@ Level = Literal["none", "pass", "warning", "fail"]
 LEAST_INSIDE = 0.85
 #: A left-out error from this many epsilons on turns the lamp red; above one epsilon it is amber.
 FAR = 10.0
+#: A sigma below this is rounding, metres.
+NOISE = 1e-9
 _WORDS: dict[Level, str] = {"none": "–", "pass": "PASS", "warning": "WARNING", "fail": "FAIL"}
 _ORDER: tuple[Level, ...] = ("none", "pass", "warning", "fail")
 _SCHEMES = {
@@ -108,7 +110,9 @@ def verdict_of(
 
 def _at_the_data(a: Accuracy) -> Lamp:
     figures = {"sigma": a.sigma, "epsilon": a.epsilon}
-    if a.passed:
+    if a.passed and a.sigma < NOISE:
+        text = message("data.verdict-rounding", "σ < 1e-9 m < ε {epsilon:g} m", epsilon=a.epsilon)
+    elif a.passed:
         text = message("data.verdict-below", "σ {sigma:#.3g} m < ε {epsilon:g} m", **figures)
     elif a.sigma < a.epsilon:
         text = message(
