@@ -44,6 +44,7 @@ from geofit.project.body_sources import outline_layers, site_codes
 from geofit.project.horizon_body import needed_horizons
 from geofit.project.provenance import Provenance
 from geofit.project.step_files import Signed
+from geofit.report.digits import volume
 
 __all__ = ["Bodies"]
 
@@ -180,15 +181,15 @@ class Bodies(QObject):
         self.showing.chosen = name
         self.showing.renew()
         verdict = result.verdict
-        text = message("gui.log-body-volume", "{name}: {volume:.6g} m³", name=name, volume=result.mesh.volume)
+        text = message("gui.log-body-volume", "{name}: {volume}", name=name, volume=volume(result.mesh.volume))
         if verdict is not None:
             text = message(
                 "gui.log-body-fitted",
-                "{name}: {verdict}, {data}, {volume:.6g} m³, violations: {count}",
+                "{name}: {verdict}, {data}, {volume}, violations: {count}",
                 name=name,
                 verdict=verdict.word,
                 data=verdict.data.text,
-                volume=result.mesh.volume,
+                volume=volume(result.mesh.volume),
                 count=len(result.violations),
             )
         _LOG.info(text)

@@ -21,6 +21,7 @@ from geofit.project.body_record import FITTED, BodyProvenance, BodyRecord, Inter
 from geofit.project.body_sources import given_of_logs, interval_codes
 from geofit.project.document import Document
 from geofit.project.provenance import Provenance
+from geofit.report.digits import volume
 
 __all__ = ["BodyShowing"]
 
@@ -154,7 +155,7 @@ class BodyShowing(QObject):
             accuracy, verdict = (None, None) if result is None else (result.accuracy, result.verdict)
             words = name
             if result is not None:
-                words = f"{name}: {result.mesh.volume:.6g} m³"
+                words = f"{name}: {volume(result.mesh.volume)}"
             if verdict is not None:
                 words += "\n" + translated(verdict.text)
             if self.stale(record):

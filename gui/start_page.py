@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QSize, Qt, Signal
 from PySide6.QtGui import QDragEnterEvent, QDragLeaveEvent, QDropEvent
 from PySide6.QtWidgets import (
     QFrame,
@@ -89,6 +89,13 @@ class StartPage(QWidget):
         layout.addWidget(inner, 20)
         layout.addStretch(1)
         self.show_recent(())
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Draw the icons in the colour of another theme."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            for button, drawing in ((self.sample, "fit"), (self.open, "open"), (self.new, "import")):
+                button.setIcon(palette_icon(drawing))
 
     def show_recent(self, files: Sequence[Path]) -> None:
         """List recent projects and site files."""

@@ -177,7 +177,7 @@ def _clustering(xyz: Floats, d: Floats, tolerance: float) -> Check:
     if value <= limit:
         text = message(
             "checks.residuals-independent",
-            "residuals of neighbours do not hang together (Moran's I {moran:.2f}, z {z:.1f})",
+            "neighbouring residuals are not correlated (Moran's I {moran:.2f}, z {z:.1f})",
             **figures,
         )
     else:

@@ -91,7 +91,8 @@ def sentence(value: Message | str, language: Language) -> str:
     text = translate(value, language).strip()
     if not text or text.endswith((".", "。", "!", "?")):
         return text[:1].upper() + text[1:]
-    stop = "。" if unicodedata.east_asian_width(text[-1]) in "WF" else "."
+    # Also behind a number or a unit at the end of a Chinese sentence.
+    stop = "。" if any(unicodedata.east_asian_width(letter) in "WF" for letter in text) else "."
     return text[:1].upper() + text[1:] + stop
 
 

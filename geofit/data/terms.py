@@ -157,7 +157,6 @@ TERMS: frozenset[str] = frozenset(
         "grid",
         "ground",
         "histogram",
-        "holds",
         "hole",
         "holes left out",
         "horizon columns",

@@ -99,7 +99,7 @@ def split_auto(plane: Floats, area: Rectangle, drawn: NDArray[np.bool_] | None =
         inside,
         message(
             "fitting.dense-points-fill-core",
-            "{count} points with a spacing below {limit:.0f} m fill {width:.0f} m x {length:.0f} m, {contrast:.1f} "
+            "{count} points with a spacing below {limit:.0f} m fill {width:.0f} m × {length:.0f} m, {contrast:.1f} "
             "times as dense as the other {others} points",
             count=int(inside.sum()),
             limit=limit,

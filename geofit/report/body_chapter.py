@@ -12,6 +12,7 @@ from geofit.data.messages import Message, message
 from geofit.data.verdict import Verdict as Judged
 from geofit.data.verdict import verdict_of
 from geofit.report import digits
+from geofit.report.chapter_head import lamps_paragraph, verdict_badge
 from geofit.report.checks_table import check_table
 from geofit.report.document import (
     Block,
@@ -24,7 +25,6 @@ from geofit.report.document import (
     Paragraph,
     Picture,
     ReportTable,
-    VerdictMark,
 )
 from geofit.report.gather import check_lines
 
@@ -86,22 +86,12 @@ def body_picture(what: str, name: str) -> str:
 def body_chapter(found: BodyFindings, t: Language) -> Chapter:
     """Lay out everything about one body."""
     a, name = found.accuracy, found.body.name
-    blocks: list[Block] = [Paragraph(_sentence(found, t)), _facts(found, t)]
+    blocks: list[Block] = [lamps_paragraph(found.verdict.lamps, t), _facts(found, t)]
     blocks += [Paragraph(sentence(text, t), "warning") for text in found.missing]
     blocks += _pictures(found, t)
     blocks += [*_volumes(found, t), *_logged(a, t), *_checks(found, t), *_left_out(found, t), *_holes(found, t)]
     blocks += _issues(found, t)
-    return Chapter(t("Body {name}", name=name), tuple(blocks), _badge(found, t))
-
-
-def _badge(found: BodyFindings, t: Language) -> VerdictMark:
-    word = found.verdict.word
-    words = {"PASS": t("PASS"), "WARNING": t("WARNING"), "FAIL": t("FAIL")}
-    return VerdictMark({"PASS": True, "FAIL": False}.get(word), words[word])
-
-
-def _sentence(found: BodyFindings, t: Language) -> str:
-    return " · ".join(t("{title}: {text}", title=lamp.title, text=lamp.text) for lamp in found.verdict.lamps)
+    return Chapter(t("Body {name}", name=name), tuple(blocks), verdict_badge(found.verdict.word, t))
 
 
 def _facts(found: BodyFindings, t: Language) -> Facts:

@@ -10,6 +10,7 @@ from geofit.data.verdict import Lamp
 from geofit.report import digits
 from geofit.report.accuracy_report import AccuracyReport, HorizonReport
 from geofit.report.annex import horizon_annex, inputs_annex
+from geofit.report.chapter_head import verdict_badge
 from geofit.report.cover import cover, reference
 from geofit.report.document import (
     Block,
@@ -24,7 +25,7 @@ from geofit.report.document import (
     ReportTable,
 )
 from geofit.report.drawings_chapter import sections_chapter
-from geofit.report.horizon_chapter import horizon_chapter, verdict_badge
+from geofit.report.horizon_chapter import horizon_chapter
 from geofit.report.interventions import interventions
 from geofit.report.limits import away_from_data, limits_of_use
 from geofit.report.structure_blocks import structure_blocks
@@ -122,7 +123,7 @@ def _verdict_row(horizon: HorizonReport, t: Language) -> tuple[Cell, ...]:
     _, checks, away = (_mark(lamp, t) for lamp in horizon.lamps)
     return (
         horizon.name,
-        verdict_badge(horizon, t),
+        verdict_badge(horizon.verdict, t),
         digits.metres(horizon.sigma),
         digits.given(horizon.epsilon),
         digits.metres(horizon.max_abs),

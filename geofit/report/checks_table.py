@@ -18,13 +18,13 @@ MOST_PLACES = 3
 def check_table(checks: Sequence[CheckLine], t: Language) -> ReportTable:
     """Lay out checks of a surface, a body or a file."""
     columns = (
-        Column(t("Question")),
-        Column(t("Answer")),
+        Column(t("Check")),
+        Column(t("Result")),
         Column(t("Value"), "number"),
         Column(t("Limit"), "number"),
         Column(t("Detail"), "wide"),
     )
-    words = {True: t("holds"), False: t("fails"), None: t("not applicable")}
+    words = {True: t("passed"), False: t("failed"), None: t("not applicable")}
     rows = tuple(
         (
             translate(c.name, t),

@@ -174,8 +174,11 @@ def _base_map(axes: Axes, result: HorizonResult, wide: float) -> None:
         collar = hole.xyz[0, :2]
         if all((np.abs(collar - other) > room).any() for other in named):
             named.append(collar)
-            axes.annotate(hole.name, (collar[0], collar[1]), xytext=(2.2, 1.6), textcoords="offset points", size=4.8,
-                          color=MUTED, zorder=4, annotation_clip=True)  # fmt: skip
+            # Towards the middle where the frame is near.
+            left, low = collar[0] > axes.get_xlim()[1] - room[0], collar[1] > axes.get_ylim()[1] - room[1]
+            axes.annotate(hole.name, (collar[0], collar[1]), xytext=(-2.2 if left else 2.2, -1.6 if low else 1.6),
+                          textcoords="offset points", size=4.8, ha="right" if left else "left",
+                          va="top" if low else "baseline", color=MUTED, zorder=4, annotation_clip=True)  # fmt: skip
 
 
 def _points(axes: Axes, result: HorizonResult) -> None:

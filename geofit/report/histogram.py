@@ -54,6 +54,7 @@ def histogram(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
             axes.plot([], [], color=colour, lw=1.1, ls=dashes, label=t("{bound}: off the axis", bound=label))
     axes.set_xlim(-widest, widest)
     axes.locator_params(axis="x", nbins=6)
+    axes.locator_params(axis="y", nbins=5, integer=True)
     axes.set_xlabel(t("d, m (below the surface < 0 < above)"))
     axes.set_ylabel(t("points"))
     axes.grid(axis="y", color=LINE, lw=0.6, zorder=0)

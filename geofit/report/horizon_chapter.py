@@ -9,6 +9,7 @@ from geofit.data.messages import Message, gravest_first
 from geofit.report import digits
 from geofit.report.accuracy_report import FileCheck, HorizonReport
 from geofit.report.change_blocks import change_blocks
+from geofit.report.chapter_head import lamps_paragraph, verdict_badge
 from geofit.report.checks_table import check_table
 from geofit.report.contour_plan import plan_caption
 from geofit.report.dip_blocks import dip_blocks
@@ -21,18 +22,17 @@ from geofit.report.document import (
     Paragraph,
     Picture,
     ReportTable,
-    VerdictMark,
 )
 from geofit.report.group_tables import group_blocks
 from geofit.report.prediction_blocks import prediction_blocks
 
-__all__ = ["horizon_chapter", "verdict_badge"]
+__all__ = ["horizon_chapter"]
 
 
 def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | None = None) -> Chapter:
     """Lay out everything about one horizon."""
     blocks: list[Block] = [
-        Paragraph(_sentence(h, t)),
+        lamps_paragraph(h.lamps, t),
         _facts(h, t),
         *_notes(h, t),
         *_plan(h, t),
@@ -45,17 +45,7 @@ def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | No
         *prediction_blocks(h, t),
         *change_blocks(h.change, h.pictures.get("change", ""), t),
     ]
-    return Chapter(t("Horizon {name}", name=h.name), tuple(blocks), verdict_badge(h, t))
-
-
-def verdict_badge(h: HorizonReport, t: Language) -> VerdictMark:
-    """Return the badge of a horizon's verdict."""
-    words = {"PASS": t("PASS"), "WARNING": t("WARNING"), "FAIL": t("FAIL")}
-    return VerdictMark({"PASS": True, "FAIL": False}.get(h.verdict), words[h.verdict])
-
-
-def _sentence(h: HorizonReport, t: Language) -> str:
-    return " · ".join(t("{title}: {text}", title=lamp.title, text=lamp.text) for lamp in h.lamps)
+    return Chapter(t("Horizon {name}", name=h.name), tuple(blocks), verdict_badge(h.verdict, t))
 
 
 def _facts(h: HorizonReport, t: Language) -> Facts:

@@ -195,6 +195,10 @@ def _widths(table: ReportTable, room: float, type_: Typesetter) -> tuple[float, 
     wide = [i for i, column in enumerate(table.columns) if column.kind == "wide"]
     fixed = sum(width for i, (_, width) in enumerate(need) if i not in wide)
     if wide and room - fixed >= NARROWEST * len(wide):
+        left = room - fixed - sum(need[i][1] for i in wide)
+        if left > 0:
+            # No column stands far from the next one because a wide one has more room than words.
+            return tuple(width + min(left / len(need), AIRIEST) for _, width in need)
         rest = _shared(room - fixed, [need[i] for i in wide])
         widths = [width for _, width in need]
         for i, width in zip(wide, rest, strict=True):

@@ -28,7 +28,7 @@ def _order(report: AccuracyReport, t: Language) -> list[Block]:
         columns = (
             Column(t("Upper horizon")),
             Column(t("Lower horizon")),
-            Column(t("Answer")),
+            Column(t("Result")),
             Column(t("Least thickness, m"), "number"),
             Column(t("Mean thickness, m"), "number"),
             Column(t("Crossing area, m²"), "number"),
@@ -50,7 +50,7 @@ def _order(report: AccuracyReport, t: Language) -> list[Block]:
 
 
 def _order_row(order: OrderLine, t: Language) -> tuple[Cell, ...]:
-    words = {True: t("holds"), False: t("fails"), None: t("not applicable")}
+    words = {True: t("passed"), False: t("failed"), None: t("not applicable")}
     where = "–" if order.deepest is None else f"{digits.place(order.deepest[0])}, {digits.place(order.deepest[1])}"
     return (
         order.upper,

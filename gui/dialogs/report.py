@@ -117,7 +117,7 @@ class ReportDialog(TaskDialog):
         label = QLabel(self.tr("&Folder"))
         label.setBuddy(self.folder)
         form.addRow(self.tr("&Language"), self.language)
-        form.addRow(self.tr("Forms"), forms)
+        form.addRow(self.tr("Formats"), forms)
         form.addRow(self.tr("&Date"), self.date)
         form.addRow(label, place)
         form.addRow(self.tr("Away from the data"), self.examine)

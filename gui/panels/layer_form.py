@@ -27,14 +27,15 @@ class LayerForm(QGroupBox):
         self.opacity.setAccessibleName(self.tr("Opacity"))
         self.colour_by = QComboBox()
         self.colour_by.setAccessibleName(self.tr("Colour by"))
-        self.colour_by.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self.colour_by.setMinimumContentsLength(6)
+        self.colour_by.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
         self.isolines = QCheckBox(self.tr("Contours"))
         self.labels = QCheckBox(self.tr("Names"))
         self.legend = _LegendBox()
         self._form = QFormLayout(self)
         self._form.setContentsMargins(8, 8, 8, 8)
         self._form.setSpacing(6)
+        # Where the dock is narrow, a box stands below its label rather than being cut off.
+        self._form.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapLongRows)
         self._form.addRow(self.tr("Opacity"), self.opacity)
         self._form.addRow(self.tr("Colour by"), self.colour_by)
         self._form.addRow(self.isolines)
@@ -63,6 +64,8 @@ class LayerForm(QGroupBox):
             self.colour_by.clear()
             for choice in layer.choices:
                 self.colour_by.addItem(word(choice), choice)
+            # Its own least width would cut the longest choice off.
+            self.colour_by.setMinimumWidth(self.colour_by.sizeHint().width())
         self.colour_by.setCurrentIndex(self.colour_by.findData(layer.colour_by))
         self._form.setRowVisible(self.colour_by, len(layer.choices) > 1)
         for box, value in ((self.isolines, layer.isolines), (self.labels, layer.labels)):

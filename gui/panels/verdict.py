@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPalette, QPen
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QSizePolicy, QWidget
@@ -75,7 +77,7 @@ class VerdictBadge(QFrame):
     def text(self) -> str:
         """Everything that the badge says, in lines."""
         labels = (self._word, *(label for _, label in self.lamps), self._more, self._old)
-        return "\n".join(label.text() for label in labels if label.text())
+        return "\n".join(label.text() for label in labels if label.text()).replace("\N{NO-BREAK SPACE}", " ")
 
     def show_accuracy(
         self, accuracy: Accuracy | None, stale: bool = False, verdict: Verdict | None = None, waiting: bool = False
@@ -124,7 +126,7 @@ class VerdictBadge(QFrame):
             mark.setVisible(shown)
             label.setVisible(shown)
             mark.name = level_mark(lamps[k].level) if shown else "none"
-            label.setText(in_lengths(translated(lamps[k].text)) if shown else "")
+            label.setText(_unbroken(in_lengths(translated(lamps[k].text))) if shown else "")
             label.setToolTip(translated(lamps[k].title) if shown else "")
             mark.update()
 
@@ -156,6 +158,11 @@ class VerdictBadge(QFrame):
             painter.drawRoundedRect(QRectF(0, 0, 5, self.height()), 2, 2)
         # Not when Python lets go of it: a traceback would hold it beyond the event.
         painter.end()
+
+
+def _unbroken(text: str) -> str:
+    """Return a text whose numbers stay on one line with their units."""
+    return re.sub(r"(?<=\d) (?=(?:m|ft|%|ε)(?!\w))", "\N{NO-BREAK SPACE}", text)
 
 
 def verdict_word(verdict: Verdict) -> str:

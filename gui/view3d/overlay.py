@@ -78,15 +78,19 @@ def draw_overlay(painter: QPainter, view: Projector, content: Content, theme: Th
     small = QFont(font)
     small.setPointSizeF(max(font.pointSizeF() - 1, 7.0))
     painter.setFont(small)
-    _marks(painter, content.marks, theme)
-    _names(painter, view, content.names, theme)
+    legends = _legend_boxes(small, view, content.legends)
+    kept = [*(box for _, _, box in legends), _note_box(font, view, content)]
+    _marks(painter, content.marks, kept, theme)
+    _names(painter, view, content.names, kept, theme)
     if content.path is not None:
         _path(painter, view, content.path, content.path_text, theme)
     for handle in content.handles:
         _handle(painter, view, handle, theme)
     for ring in content.rings:
         _ring(painter, view, ring, theme)
-    _legends(painter, view, content.legends, theme)
+    for title, legend, box in legends:
+        _plate(painter, box, theme, 205)
+        draw_legend(painter, box, title, legend, theme)
     _directions(painter, view, content.directions, theme)
     painter.setFont(font)
     _note(painter, view, content, theme)
@@ -100,21 +104,37 @@ def _plate(painter: QPainter, box: QRectF, theme: Theme, alpha: int = 190, borde
     painter.drawRoundedRect(box, 3, 3)
 
 
-def _marks(painter: QPainter, marks: Sequence[Mark], theme: Theme) -> None:
+def _marks(painter: QPainter, marks: Sequence[Mark], kept: Sequence[QRectF], theme: Theme) -> None:
     metrics = QFontMetricsF(painter.font())
     for mark in marks:
         painter.setPen(QPen(theme.quiet, 1))
         tip = QPointF(mark.x + 5 * mark.out[0], mark.y + 5 * mark.out[1])
-        painter.drawLine(QPointF(mark.x, mark.y), tip)
         wide, high = metrics.horizontalAdvance(mark.text), metrics.height()
         # The nearest corner or side of the text's box is at the tick.
         x = max(tip.x() + 3 * mark.out[0] - wide * (1 - mark.out[0]) / 2, 2.0)
         y = tip.y() + 3 * mark.out[1] - high * (1 - mark.out[1]) / 2
-        painter.drawText(QRectF(x, y, wide + 1, high), Qt.AlignmentFlag.AlignCenter, mark.text)
+        box = QRectF(x, y, wide + 1, high)
+        if not any(box.intersects(other) for other in kept):
+            painter.drawLine(QPointF(mark.x, mark.y), tip)
+            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, mark.text)
 
 
-def _names(painter: QPainter, view: Projector, groups: Sequence[tuple[Floats, Sequence[str]]], theme: Theme) -> None:
-    """Draw names from front to back, leaving out what would cover another one."""
+def _cells(box: QRectF) -> set[tuple[int, int]]:
+    return {
+        (i, j)
+        for i in range(int(box.left() // CELL), int(box.right() // CELL) + 1)
+        for j in range(int(box.top() // CELL), int(box.bottom() // CELL) + 1)
+    }
+
+
+def _names(
+    painter: QPainter,
+    view: Projector,
+    groups: Sequence[tuple[Floats, Sequence[str]]],
+    kept: Sequence[QRectF],
+    theme: Theme,
+) -> None:
+    """Draw names from front to back, leaving out what would cover another one or lie in a box that is kept free."""
     metrics = QFontMetricsF(painter.font())
     placed: list[tuple[float, float, float, str]] = []
     for places, texts in groups:
@@ -122,15 +142,11 @@ def _names(painter: QPainter, view: Projector, groups: Sequence[tuple[Floats, Se
             seen = view.screen(places)
             inside = (seen[:, 0] > 0) & (seen[:, 0] < view.width) & (seen[:, 1] > 0) & (seen[:, 1] < view.height)
             placed += [(*seen[k, [2, 0, 1]].tolist(), texts[k]) for k in np.flatnonzero(inside).tolist()]
-    taken: set[tuple[int, int]] = set()
+    taken = set[tuple[int, int]]().union(*map(_cells, kept))
     for _, x, y, text in sorted(placed):
         wide, high = metrics.horizontalAdvance(text) + 6, metrics.height()
         box = QRectF(x - wide / 2, y - high - 7, wide, high)
-        cells = {
-            (i, j)
-            for i in range(int(box.left() // CELL), int(box.right() // CELL) + 1)
-            for j in range(int(box.top() // CELL), int(box.bottom() // CELL) + 1)
-        }
+        cells = _cells(box)
         if taken.isdisjoint(cells):
             taken |= cells
             _plate(painter, box, theme, 150)
@@ -213,16 +229,19 @@ def _handle(painter: QPainter, view: Projector, at: Floats, theme: Theme) -> Non
         painter.drawRoundedRect(QRectF(x - 6, y - 6, 12, 12), 3, 3)
 
 
-def _legends(painter: QPainter, view: Projector, legends: Sequence[tuple[str, Legend]], theme: Theme) -> None:
-    top = MARGIN
-    width = max((legend_size(painter.font(), title, legend)[0] for title, legend in legends), default=0.0)
+def _legend_boxes(
+    font: QFont, view: Projector, legends: Sequence[tuple[str, Legend]]
+) -> list[tuple[str, Legend, QRectF]]:
+    """Return the legends that there is room for, from the upper right corner downwards, with their boxes."""
+    top, found = MARGIN, []
+    width = max((legend_size(font, title, legend)[0] for title, legend in legends), default=0.0)
     for title, legend in legends:
-        height = legend_size(painter.font(), title, legend)[1]
+        height = legend_size(font, title, legend)[1]
         if top + height > view.height - 110:
-            return
-        _plate(painter, QRectF(view.width - width - MARGIN, top, width, height), theme, 205)
-        draw_legend(painter, QRectF(view.width - width - MARGIN, top, width, height), title, legend, theme)
+            break
+        found.append((title, legend, QRectF(view.width - width - MARGIN, top, width, height)))
         top += height + 6
+    return found
 
 
 def legend_size(font: QFont, title: str, legend: Legend) -> tuple[float, float]:
@@ -290,12 +309,15 @@ def _directions(painter: QPainter, view: Projector, axes: Floats, theme: Theme) 
             painter.drawText(QRectF(far.x() - 10, far.y() - 10, 20, 20), Qt.AlignmentFlag.AlignCenter, "ENZ"[k])
 
 
+def _note_box(font: QFont, view: Projector, content: Content) -> QRectF:
+    metrics = QFontMetricsF(font)
+    high = metrics.height() + 8
+    return QRectF(MARGIN, view.height - MARGIN - high, metrics.horizontalAdvance(content.note) + 16, high)
+
+
 def _note(painter: QPainter, view: Projector, content: Content, theme: Theme) -> None:
     """Write the exaggeration into the lower left corner, with the scale bar where the picture has one scale."""
-    metrics = QFontMetricsF(painter.font())
-    wide = metrics.horizontalAdvance(content.note) + 16
-    high = metrics.height() + 8
-    box = QRectF(MARGIN, view.height - MARGIN - high, wide, high)
+    metrics, box = QFontMetricsF(painter.font()), _note_box(painter.font(), view, content)
     _plate(painter, box, theme, 215, theme.quiet)
     painter.setPen(theme.text)
     painter.drawText(box, Qt.AlignmentFlag.AlignCenter, content.note)

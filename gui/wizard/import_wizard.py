@@ -75,7 +75,7 @@ class ImportWizard(TaskDialog):
         self.target.textChanged.connect(self._hint)
         self.back = QPushButton(self.tr("&Back"))
         self.back.clicked.connect(self._go_back)
-        self.build = QPushButton(self.tr("&Build horizons…"))
+        self.build = QPushButton(self.tr("Build &horizons…"))
         self.build.setToolTip(self.tr("Group codes of the logs to horizons: top or base, which bed, thin beds ignored"))
         self.build.clicked.connect(self._go_build)
         self.horizons: HorizonPage | None = None

@@ -1,0 +1,22 @@
+"""How a chapter about something that is judged begins: the badge of its verdict, and its three lamps as a sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from geofit.data.languages import Language
+from geofit.data.verdict import Lamp
+from geofit.report.document import Paragraph, VerdictMark
+
+__all__ = ["lamps_paragraph", "verdict_badge"]
+
+
+def verdict_badge(word: str, t: Language) -> VerdictMark:
+    """Return the badge of a verdict: "PASS", "WARNING" or "FAIL"."""
+    words = {"PASS": t("PASS"), "WARNING": t("WARNING"), "FAIL": t("FAIL")}
+    return VerdictMark({"PASS": True, "FAIL": False}.get(word), words[word])
+
+
+def lamps_paragraph(lamps: Iterable[Lamp], t: Language) -> Paragraph:
+    """Return what the lamps of a verdict say: at the data, checks, away from the data."""
+    return Paragraph(" · ".join(t("{title}: {text}", title=lamp.title, text=lamp.text) for lamp in lamps))
