@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from geofit.geometry.clip import inside
 from geofit.geometry.trim_loops import inside_loops as inside_loops
-from geofit.splines.bspline import collocation
+from geofit.splines.bspline import basis
 from geofit.splines.patch import Patch
 from geofit.surfaces.protocol import FittedSurface
 
@@ -70,14 +71,25 @@ def _grid(patch: Patch, u: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
     if patch.weights is not None:
         grid = u[:, None], v[None, :]
         return patch.evaluate(*grid), patch.evaluate(*grid, 1, 0), patch.evaluate(*grid, 0, 1)
-    along, along_du = (collocation(patch.knots_u, patch.degree[0], u, order) for order in (0, 1))
-    across, across_dv = (collocation(patch.knots_v, patch.degree[1], v, order) for order in (0, 1))
+    along, along_du = (_rows(patch.knots_u, patch.degree[0], u, order) for order in (0, 1))
+    across, across_dv = (_rows(patch.knots_v, patch.degree[1], v, order) for order in (0, 1))
+    nu, nv = patch.control.shape[:2]
     # One axis after the other: a sum over rows for each column of the lattice instead of 16 products a place.
-    columns = patch.control.transpose(0, 2, 1)
-    rows, rows_du = (np.tensordot(matrix, columns, axes=1) for matrix in (along, along_du))
-    found = (part @ matrix.T for part, matrix in ((rows, across), (rows_du, across), (rows, across_dv)))
-    points, su, sv = (np.ascontiguousarray(part.transpose(0, 2, 1)) for part in found)
+    rows, rows_du = ((m @ patch.control.reshape(nu, -1)).reshape(-1, nv, 3).swapaxes(0, 1) for m in (along, along_du))
+    found = (
+        (m @ np.ascontiguousarray(part).reshape(nv, -1)).reshape(len(v), len(u), 3)
+        for part, m in ((rows, across), (rows_du, across), (rows, across_dv))
+    )
+    points, su, sv = (np.ascontiguousarray(part.swapaxes(0, 1)) for part in found)
     return points, su, sv
+
+
+def _rows(knots: Floats, degree: int, x: Floats, derivative: int) -> csr_array:
+    """Return the (n, count) matrix of the basis functions at ``x``; of each row few are not zero."""
+    first, values = basis(knots, degree, x, derivative)
+    columns = first[:, None] + np.arange(degree + 1)
+    start = np.arange(0, columns.size + 1, degree + 1)
+    return csr_array((values.ravel(), columns.ravel(), start), shape=(len(x), len(knots) - degree - 1))
 
 
 def _ends_and_middles(knots: Floats, fewest: int) -> Floats:

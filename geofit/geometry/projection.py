@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from geofit.data.threads import side_by_side
-from geofit.geometry.ball_tree import BallTree
+from geofit.geometry.ball_tree import BallTree, neighbours_together
 from geofit.geometry.cells import Cells, Place, refine_foot_points, tabulate
 from geofit.geometry.elevation import plan_map
 from geofit.geometry.foot_points import Projection, foot_points_over_plan
@@ -149,10 +149,12 @@ class Searchable:
         """Return the nearest places to (n, 3) points by compiled loops."""
         apart, done = np.full(len(target), np.inf), np.zeros(len(target), bool)
         cell, local = np.zeros(len(target), np.int64), np.zeros((2, len(target)))
+        order, back = neighbours_together(target)
         self.explore(
-            target, done.copy(), (apart, cell, local, done), untrimmed_patches(len(self.cells.breaks)), self.balls
-        )
-        return Place(cell, local, done)
+            target[order], done.copy(), (apart, cell, local, done), untrimmed_patches(len(self.cells.breaks)),
+            self.balls,
+        )  # fmt: skip
+        return Place(cell[back], local[:, back], done[back])
 
     def explore(
         self, target: Floats, known: Bools, found: tuple[Floats, Ints, Floats, Bools], loops: Any, places: Any
@@ -189,8 +191,7 @@ class Searchable:
         points, spacing, curvature = self.tree.data[rows], wider * self.spacing[rows], self.curvature[rows]
         tree = BallTree.of(points, np.zeros(len(rows)), spacing, curvature)
         local, lattice = (np.ascontiguousarray(values[:, rows]) for values in (self.place.local, self.lattice))
-        places = points, self.place.cell[rows], local, self.patch[rows], lattice, spacing, curvature
-        return places, (tree.order, tree.centre, tree.radius, tree.spacing, tree.curvature)
+        return (points, self.place.cell[rows], local, self.patch[rows], lattice), tree.arrays
 
 
 def untrimmed_patches(patches: int) -> tuple[Any, ...]:

@@ -29,32 +29,33 @@ NEWTON, REST = 60, 1e-7
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _far(a: Floats, b: Floats) -> float:
-    return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
+def _from(rows: Floats, k: int, x: Floats) -> float:
+    """Return the distance of a point from what row k begins with."""
+    return math.sqrt((rows[k, 0] - x[0]) ** 2 + (rows[k, 1] - x[1]) ** 2 + (rows[k, 2] - x[2]) ** 2)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _children(centre: Floats, node: int, x: Floats, stack: Ints, top: int) -> int:
-    """Put both halves of a ball on the stack, the nearer one on top."""
+def _children(nodes: Floats, node: int, x: Floats, stack: Ints, far: Floats, top: int) -> int:
+    """Put both halves of a ball on the stack with the distances of their centres, the nearer one on top."""
     left = 2 * node + 1
-    nearer = _far(centre[left], x) <= _far(centre[left + 1], x)
-    stack[top] = left + 1 if nearer else left
-    stack[top + 1] = left if nearer else left + 1
+    to_left, to_right = _from(nodes, left, x), _from(nodes, left + 1, x)
+    nearer = to_left <= to_right
+    stack[top], far[top] = (left + 1, to_right) if nearer else (left, to_left)
+    stack[top + 1], far[top + 1] = (left, to_left) if nearer else (left + 1, to_right)
     return top + 2
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _near(tree: Any, points: Floats, x: Floats) -> int:
+def _near(order: Ints, nodes: Floats, leaves: Floats, x: Floats) -> int:
     """Return a place near to a point: of each two balls' centres the nearer one leads on."""
-    order, centre, radius = tree[0], tree[1], tree[2]
-    node, inner = 0, len(radius) // 2
+    node, inner = 0, len(nodes) // 2
     while node < inner:
         node = 2 * node + 1
-        if _far(centre[node + 1], x) < _far(centre[node], x):
+        if _from(nodes, node + 1, x) < _from(nodes, node, x):
             node += 1
     found, best = order[0], np.inf
     for k in range(LEAF * (node - inner), LEAF * (node - inner + 1)):
-        far = _far(points[order[k]], x)
+        far = _from(leaves, k, x)
         if far < best:
             best, found = far, order[k]
     return int(found)
@@ -120,18 +121,17 @@ def explore_tree(cells: Any, places: Any, tree: Any, loops: Any, target: Floats,
     """Find feet inside the loops that are nearer to (n, 3) points than what is found already.
 
     ``cells``: table, neighbours, rounding error, patches, lattice origin and steps, centres and half widths of the
-    cells. ``places``: position, cell, local coordinates, patch, lattice coordinates, spacing, curvature. ``tree``:
-    order, centres, radii, spacings, curvatures of their ball tree. ``loops``: which patches are trimmed, domains, where
+    cells. ``places``: position, cell, local coordinates, patch, lattice coordinates. ``tree``: order, nodes and leaves
+    of their ball tree. ``loops``: which patches are trimmed, domains, where
     the sides of each strip begin in the list, the list, the sides. ``found``: distance (inf: nothing yet), cell, local
     coordinates, converged, overwritten. ``known`` marks points whose cell and local coordinates are a foot that counts
     as walked to, though it may lie outside the loops.
     """
-    order, centre, radius, widest, bent = tree
-    points, spacing, curvature = places[0], places[5], places[6]
+    order, nodes, leaves = tree
     origin, steps, patch_of = cells[4], cells[5], cells[3]
     apart, cell, local = found[0], found[1], found[2]
-    inner = len(radius) // 2
-    jet, stack = np.empty((7, 4)), np.empty(128, np.int64)
+    inner = len(nodes) // 2
+    jet, stack, away = np.empty((7, 4)), np.empty(128, np.int64), np.empty(128)
     patch, at = np.empty((MOST_WALKS + 2, 2), np.int64), np.empty((MOST_WALKS + 2, 4))
     for i in range(len(target)):
         x, count = target[i], 0
@@ -142,26 +142,27 @@ def explore_tree(cells: Any, places: Any, tree: Any, loops: Any, target: Floats,
             at[0, 3] = origin[1, c] + steps[1, c] * (local[1, i] + 1) / 2
             count = 1
         else:
-            _walked(cells, places, loops, _near(tree, points, x), i, x, found, patch, at, count, jet)
+            _walked(cells, places, loops, _near(order, nodes, leaves, x), i, x, found, patch, at, count, jet)
             count = 1
         top = 1
-        stack[0] = 0
+        stack[0], away[0] = 0, _from(nodes, 0, x)
         while top and count <= MOST_WALKS:
             top -= 1
             node, best = stack[top], apart[i]
-            off = max(_far(centre[node], x) - radius[node], 0.0)
-            if off * off > best * best + widest[node] ** 2 * (1 + best * bent[node]):
+            off = max(away[top] - nodes[node, 3], 0.0)
+            if off * off > best * best + nodes[node, 4] ** 2 * (1 + best * nodes[node, 5]):
                 continue
             if node < inner:
-                top = _children(centre, node, x, stack, top)
+                top = _children(nodes, node, x, stack, away, top)
                 continue
             for k in range(LEAF * (node - inner), LEAF * (node - inner + 1)):
-                one, best = order[k], apart[i]
-                far = _far(points[one], x)
-                if far * far > best * best + spacing[one] ** 2 * (1 + best * curvature[one]):
+                best = apart[i]
+                far = _from(leaves, k, x)
+                if far * far > best * best + leaves[k, 3] ** 2 * (1 + best * leaves[k, 4]):
                     continue
+                one = order[k]
                 # Within the radius of curvature the squared distance is convex around a foot.
-                margin = SAME_FOOT if best * curvature[one] < 0.5 else 0.5
+                margin = SAME_FOOT if best * leaves[k, 4] < 0.5 else 0.5
                 if not _known(places, one, patch, at, count, margin):
                     _walked(cells, places, loops, one, i, x, found, patch, at, count, jet)
                     count += 1
@@ -242,7 +243,6 @@ def rim_feet(
     cells: Any,
     rim: Any,
     tree: Any,
-    middle: Floats,
     ends: Floats,
     bent: Floats,
     target: Floats,
@@ -254,25 +254,25 @@ def rim_feet(
 
     ``rim``: start and way of short pieces in the parameters of their patch, the patch, then the breaks of all patches
     in u and v, where those of each begin, and its first cell. No place of a piece is farther than ``bent`` from the
-    chord of its ``ends``; ``tree`` is a ball tree of their ``middle``.
+    chord of its ``ends``; ``tree``: order, nodes and leaves of a ball tree of their middles.
     """
-    order, centre, radius = tree[0], tree[1], tree[2]
-    inner = len(radius) // 2
-    jet, slope, stack = np.empty((7, 4)), np.empty(3), np.empty(128, np.int64)
+    order, nodes, leaves = tree
+    inner = len(nodes) // 2
+    jet, slope, stack, away = np.empty((7, 4)), np.empty(3), np.empty(128, np.int64), np.empty(128)
     for i in range(len(target)):
         x = target[i]
-        near = _near(tree, middle, x)
+        near = _near(order, nodes, leaves, x)
         share[i], apart[i] = _nearest_on_piece(rim, cells, near, x, jet, slope)
         piece[i] = near
         top = 1
-        stack[0] = 0
+        stack[0], away[0] = 0, _from(nodes, 0, x)
         while top:
             top -= 1
             node = stack[top]
-            if _far(centre[node], x) - radius[node] >= apart[i]:
+            if away[top] - nodes[node, 3] >= apart[i]:
                 continue
             if node < inner:
-                top = _children(centre, node, x, stack, top)
+                top = _children(nodes, node, x, stack, away, top)
                 continue
             for k in range(LEAF * (node - inner), LEAF * (node - inner + 1)):
                 one = order[k]

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
+from geofit.geometry.ball_tree import neighbours_together
 from geofit.geometry.cells import Cells, Place, refine_foot_points, tabulate
 from geofit.geometry.clip import clip
 from geofit.geometry.elevation import plan_map
@@ -105,7 +106,9 @@ def _searched_again(
     for k, patch in enumerate(patches):
         own = surface.patch == k
         on_face[own] = inside_loops(patch, loops[k], u[own], v[own])
-    return TrimSearch(patches, loops, _pieces(patches, loops), on_face).nearest(np.ascontiguousarray(target), beyond)
+    order, back = neighbours_together(target)
+    found, on_rim = TrimSearch(patches, loops, _pieces(patches, loops), on_face).nearest(target[order], beyond[order])
+    return found[back], on_rim[back]
 
 
 def beyond_edge(patches: Sequence[Patch], target: Floats, found: Projection) -> Bools:

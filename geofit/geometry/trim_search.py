@@ -62,8 +62,7 @@ class TrimSearch:
         self.surface: Searchable = searchable(patches)
         self.pieces = pieces
         none = np.zeros(len(pieces.start))
-        tree = BallTree.of(pieces.middle, pieces.reach, none, none)
-        self._rim_tree = tree.order, tree.centre, tree.radius
+        self._rim_tree = BallTree.of(pieces.middle, pieces.reach, none, none).arrays
         breaks = self.surface.cells.breaks
         ends = [np.cumsum([0, *(len(pair[axis]) for pair in breaks)]) for axis in (0, 1)]
         knots = [np.concatenate([pair[axis] for pair in breaks]) for axis in (0, 1)]
@@ -102,7 +101,6 @@ class TrimSearch:
                 surface.of_cells,
                 self._rim,
                 self._rim_tree,
-                pieces.middle,
                 pieces.ends,
                 pieces.bent,
                 target[some],
