@@ -154,6 +154,37 @@ def test_the_dense_process_finds_range_and_noise_of_its_own_field(load):
     assert np.std(mean - z[250:]) < 0.5 * np.std(z[250:])
 
 
+def test_the_dense_process_leaves_groups_out_as_if_they_had_never_been_there(load):
+    gp = load("peers.gp")
+    rng = np.random.default_rng(4)
+    plane = rng.uniform(0, 10, (40, 2))
+    z = np.sin(plane[:, 0]) + 0.2 * plane[:, 1] + rng.normal(0, 0.1, 40)
+    process = gp.Process("Matérn 3/2", 3.0, 0.05, 1, 0.0)
+    groups = [np.array([0, 1, 2]), np.array([7])]
+    error, sd = process.left_out(plane, z, groups)
+    for group in groups:
+        rest = np.setdiff1d(np.arange(40), group)
+        mean, alone = process.predict(plane[rest], z[rest], plane[group])
+        assert error[group] == pytest.approx(z[group] - mean, abs=1e-9)
+        # The sill is that of all points: one factor for the whole group, near 1.
+        assert np.ptp(sd[group] / alone) < 1e-9
+        assert 0.8 < (sd[group] / alone)[0] < 1.25
+    assert np.isnan(error[3:7]).all()
+
+
+def test_the_score_of_a_normal_distribution_is_its_definition(load):
+    """The integral of (F(x) - 1 for x >= z)^2 over x."""
+    crps = load("realdata.crps")
+    x = np.linspace(-30, 30, 600_001)
+    for error, sd in ((0.0, 1.0), (1.3, 0.5), (-4.0, 2.0)):
+        share = np.exp(-0.5 * ((x - 0.0) / sd) ** 2).cumsum()
+        share /= share[-1]
+        assert crps.score_of(np.array([error]), np.array([sd])) == pytest.approx(
+            float(((share - (x >= error)) ** 2).sum() * (x[1] - x[0])), rel=1e-3
+        )
+    assert np.isnan(crps.score_of(np.array([np.nan]), np.array([1.0])))
+
+
 def test_sites_of_the_field_are_reproducible_and_lie_in_their_area(load):
     field = load("field")
     for seed in (0, 3, 6, 9):

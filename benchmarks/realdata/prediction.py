@@ -10,13 +10,14 @@ from geofit import FitSettings, GeofitError, HorizonFit, PointSet, fit_horizon
 from geofit.data.prediction import PredictionResult
 from geofit.prediction.examine import examine
 
+from .crps import FEWEST, no_worse, process_score, score_of
 from .why import metres
 
 __all__ = ["CLEARLY", "PREDICTION", "Off", "field_alone", "lost", "off_cells", "prediction", "summary", "why_lost"]
 
 PREDICTION = (
     "set", "tolerance, m", "left out", "geofit, m", "thin plate, m", "kriging, m", "inside 90 %", "before", "factor",
-    "outliers",
+    "outliers", "CRPS, m", "of a GP, m",
 )  # fmt: skip
 #: geofit counts as no worse than another method up to this many times its error.
 CLEARLY = 1.02
@@ -29,7 +30,8 @@ class Off:
     """What leaving out hole by hole found; ``alone`` is the error of the regional field alone, where it was asked.
 
     ``raw`` and ``inside`` are the shares inside the 90 % band before and after it was held to the errors, ``factor``
-    by how much that changed the standard deviation.
+    by how much that changed the standard deviation. ``crps`` and ``gp_crps`` score the predicted distribution and that
+    of a dense Gaussian process (:mod:`realdata.crps`) where there are holes enough.
     """
 
     groups: int
@@ -44,6 +46,8 @@ class Off:
     alone: float = nan
     alone_energy: str = ""
     notes: tuple[str, ...] = ()
+    crps: float = nan
+    gp_crps: float = nan
 
     @property
     def best(self) -> tuple[str, float]:
@@ -57,9 +61,12 @@ def prediction(surface: HorizonFit, found: PredictionResult | None) -> Off | Non
     if found is None or holes is None:
         return None
     factor = found.uncertainty.factor if found.uncertainty else nan
+    scored = holes.groups >= FEWEST
     return Off(
         holes.groups, holes.rms, tuple(holes.references.items()), holes.inside, holes.inside_raw, factor,
         len(found.outliers), int(surface.core.sum()), str(surface.diagnostics.get("energy", "")), notes=found.notes,
+        crps=score_of(holes.error, holes.sd) if scored else nan,
+        gp_crps=process_score(surface, holes) if scored else nan,
     )  # fmt: skip
 
 
@@ -87,7 +94,7 @@ def off_cells(title: str, tolerance: float, off: Off) -> list[str]:
         title, f"{tolerance:g}", str(off.groups), metres(off.rms),
         *(metres(peers[name]) if name in peers else "–" for name in ("thin plate", "kriging")),
         _percent(off.inside), _percent(off.raw), f"{off.factor:.2f}" if isfinite(off.factor) else "–",
-        str(off.outliers),
+        str(off.outliers), *(metres(one) if isfinite(one) else "–" for one in (off.crps, off.gp_crps)),
     ]  # fmt: skip
 
 
@@ -97,6 +104,8 @@ def why_lost(off: Off) -> str:
     if lost(off):
         name, best = off.best
         words.append(f"{off.rms / best:.2f} x the error of {name}; {_reason(off, best)}")
+    if isfinite(off.gp_crps) and not no_worse(off.crps, off.gp_crps, CLEARLY):
+        words.append(f"a CRPS {off.crps / off.gp_crps:.2f} x that of a Gaussian process")
     if isfinite(off.inside) and not HELD[0] <= round(off.inside, 2) <= HELD[1]:
         words.append(f"{_percent(off.inside)} of {off.groups} holes lie inside the 90 % band")
     return "; ".join(words)
@@ -126,10 +135,14 @@ def summary(offs: Sequence[Off]) -> str:
         name: sum(off.rms <= CLEARLY * dict(off.peers)[name] for off in judged) for name in ("thin plate", "kriging")
     }
     held = sum(HELD[0] <= round(off.inside, 2) <= HELD[1] for off in judged)
+    scored = [off for off in offs if isfinite(off.gp_crps)]
+    better = sum(no_worse(off.crps, off.gp_crps, CLEARLY) for off in scored)
     return (
         f"Of {len(judged)} lines, geofit's error is at most {CLEARLY:g} times that of the better of the two on {won}, "
         f"that of the thin plate on {each['thin plate']}, that of kriging on {each['kriging']}. On {held} the 90 % "
-        "band holds 85 to 95 % of the holes left out."
+        "band holds 85 to 95 % of the holes left out. The continuous ranked probability score is at most "
+        f"{CLEARLY:g} times that of a dense Gaussian process on {better} of the {len(scored)} lines with at least "
+        f"{FEWEST} holes."
     )
 
 

@@ -28,6 +28,7 @@ from geofit.fitting.net import (
     degree_for,
     gather_points,
     in_patches,
+    longest_span,
     smoothed,
 )
 from geofit.fitting.parametrize import Parametrization
@@ -47,6 +48,8 @@ Rectangle = tuple[float, float, float, float]
 A_POINT, LAST_CAP = 15, 60
 #: Longest span outside a core, in units of the spacing of the sparse points: on longer ones no rough field fits.
 LONGEST = 0.45
+#: The same where the likelihood asks for a field on finer spans than evenly spaced points do, as far as the cap allows.
+LONGEST_IN_GROUPS = 0.35
 #: Slope that two neighbours may ask for beyond the field's own, where not all points of a core can be met.
 CLIFF = 0.5
 #: Span of the field's space where the knots are finer for the core's points alone, in units.
@@ -116,11 +119,11 @@ def fit_with_core(
                 "across='linear' needs at least two straight, named sections; the core is cubic across",
             ).with_severity("warning"),
         )
-    closer = 1.0
+    closer, longest = 1.0, min(LONGEST, max(longest_span(coarse), LONGEST_IN_GROUPS))
     while True:
         try:
             base, space, coefficients, plane, rule = _through_points(
-                data, core, inside, field, lines, linear, parametrization.parametric, most, closer, settings
+                data, core, inside, field, longest, lines, linear, parametrization.parametric, most, closer, settings
             )
             break
         except ExactnessError:
@@ -132,6 +135,10 @@ def fit_with_core(
             # Exactness outranks economy; a cap that a person gave is kept.
             if settings.max_control_points is not None or most > LAST_CAP * len(data.plane):
                 raise
+            if longest < LONGEST:
+                # Under the cap, the points of the core come before short spans outside it.
+                longest = LONGEST
+                continue
             most, closer = int(1.5 * most), 0.75 * closer
     if linear and rule is None:
         notes = (
@@ -169,6 +176,7 @@ def _through_points(
     core: Rectangle,
     inside: NDArray[np.bool_],
     field: FieldChoice,
+    longest: float,
     lines: Lines,
     linear: bool,
     parametric: bool,
@@ -178,7 +186,8 @@ def _through_points(
 ) -> tuple[TensorSpace, TensorSpace, Floats, Floats, Floats | None]:
     """Lay knots within a cap, fit the field on them, and let it pass through the core's points.
 
-    Between neighbours along the sections the spans are ``closer`` times as long as usual.
+    Between neighbours along the sections the spans are ``closer`` times as long as usual, outside the core no longer
+    than ``longest``, in units.
 
     Returns the field's space, the surface's, its coefficients, the plane under them, and the section lines of a core
     that is linear across them.
@@ -194,8 +203,8 @@ def _through_points(
     chosen = chosen[np.lexsort(data.plane[chosen].T)]
     plane = data.plane[chosen]
     pairs = neighbour_pairs(plane)
-    breaks, counted = _breaks(plane, pairs, data.area, degree, core, lines, most, closer)
-    coarser = [bspline.clamped_knots(some_breaks(along, FIELD_SPAN), degree) for along in breaks]
+    breaks, counted = _breaks(plane, pairs, data.area, degree, core, longest, lines, most, closer)
+    coarser = [bspline.clamped_knots(some_breaks(along, min(FIELD_SPAN, longest)), degree) for along in breaks]
     base = TensorSpace(coarser[0], coarser[1], degree)
     regional = smoothed(data, base, field)
     misfit = data.value[chosen] - base.matrix(plane) @ regional.coefficients
@@ -222,6 +231,7 @@ def _breaks(
     area: Rectangle,
     degree: int,
     core: Rectangle,
+    longest: float,
     lines: Lines,
     most: int,
     closer: float,
@@ -242,8 +252,8 @@ def _breaks(
     stretch = 1.0
     while True:
         scale = np.array([1.0, 1.0, stretch])
-        breaks_u = graded_breaks(required_u, LONGEST * stretch, sizes_u * scale)
-        breaks_v = graded_breaks(required_v, LONGEST * stretch, sizes_v * scale)
+        breaks_u = graded_breaks(required_u, longest * stretch, sizes_u * scale)
+        breaks_v = graded_breaks(required_v, longest * stretch, sizes_v * scale)
         knots = [bspline.clamped_knots(along, degree) for along in (breaks_u, breaks_v)]
         space = TensorSpace(knots[0], knots[1], degree)
         if in_patches(space.shape, core, space) <= 0.9 * most or stretch > 1e3:

@@ -7,7 +7,7 @@ those beside a core, whose net :mod:`geofit.fitting.core` makes.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -51,15 +51,17 @@ __all__ = [
     "even_space",
     "gather_points",
     "in_patches",
+    "longest_span",
 ]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
 Stage = Callable[[str, float], None]
 
-#: Shortest spans of the space on which the field is chosen, in units of the spacing: what is shorter no points of that
-#: spacing resolve. Control points of the level that the search begins on, of the first that is kept, and at most.
-EVEN, SKETCH, FIRST_LEVEL, LAST_LEVEL = 0.5, 500, 1_500, 25_000
+#: Shortest spans of the first space on which the field is chosen, in units of the spacing, and of the last: holes in
+#: groups resolve what points of an even spacing do not. Control points of the level that the search begins on, of the
+#: first that is kept, and at most.
+EVEN, CLOSE, SKETCH, FIRST_LEVEL, LAST_LEVEL = 0.5, 0.25, 500, 1_500, 25_000
 #: Points that the search begins with, at least; of twice as many every other one serves.
 SKETCHED = 10_000
 #: A finer level must raise the restricted likelihood by this much, -2 log of it.
@@ -202,8 +204,8 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldCho
     """Choose the regional field (:func:`geofit.fitting.field.choose_covariance`) and the even space that resolves it.
 
     Smoothness and direction are found on few control points, where a value of the likelihood costs little, range and
-    noise on the first level. Its spans are halved in area while the likelihood gains by it, down to those that the
-    points resolve.
+    noise on the first level. Its spans are shortened while the likelihood gains by it, down to those that points in
+    groups resolve.
     """
     degree, noise = degree_for(len(data.plane)), relative_noise(data.accuracy)
     given = None if settings.smoothing == "auto" else float(settings.smoothing)
@@ -216,11 +218,9 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldCho
         found = choose_covariance(sketch, data.plane[some], data.value[some], noise[some], given, (), data.trend)
         known = [one for one, _ in found]
     field, value = choose_covariance(space, data.plane, data.value, noise, given, known, data.trend)[0]
-    while 2 * count <= limit:
-        count *= 2
-        finer = even_space(data.area, EVEN, degree, count)
+    for finer in _finer(data.area, degree, limit):
         if finer.size < 1.3 * space.size:
-            break
+            continue
         better, reached = choose_covariance(finer, data.plane, data.value, noise, given, [field], data.trend)[0]
         if reached > value - GAIN:
             break
@@ -230,6 +230,20 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldCho
             space, data.plane, data.value, noise, given, [field], data.trend, data.slopes, field.noise
         )[0][0]
     return field, space
+
+
+def _finer(area: Rectangle, degree: int, limit: int) -> Iterator[TensorSpace]:
+    """Yield spaces of ever shorter spans: down to those of evenly spaced points, then that of points in groups."""
+    count = FIRST_LEVEL
+    while 2 * count <= limit:
+        count *= 2
+        yield even_space(area, EVEN, degree, count)
+    yield even_space(area, CLOSE, degree, limit)
+
+
+def longest_span(space: TensorSpace) -> float:
+    """Return the longest span of a space."""
+    return max(float(np.diff(knots).max()) for knots in (space.knots_u, space.knots_v))
 
 
 def smoothed(data: Data, space: TensorSpace, field: FieldChoice) -> Smoothed:

@@ -16,6 +16,7 @@ from geofit.fitting.field import (
     smooth,
     widened_space,
 )
+from geofit.fitting.net import EVEN, longest_span
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
@@ -110,6 +111,39 @@ def test_the_field_is_nearer_to_the_truth_than_its_data(seed):
 def test_a_rugged_surface_takes_the_rougher_field(seed):
     plane, z, _ = cloud(N, seed, 0.05, rugged(seed))
     assert chosen(space_over(N), plane, z).alpha == 2
+
+
+def groups_of_holes(seed, height):
+    """Twenty groups of six holes each, 30 m wide, and 600 places in the groups."""
+    rng = np.random.default_rng(seed)
+    middle = rng.uniform(100, SIZE - 100, (20, 1, 2))
+    holes, places = ((middle + rng.normal(0, 30, (20, each, 2))).reshape(-1, 2) for each in (6, 30))
+    xy, at = (np.clip(part, 0, SIZE) + np.array([EASTING, NORTHING]) for part in (holes, places))
+    return PointSet(np.column_stack([xy, height(*xy.T)])), at
+
+
+def field_alone(points):
+    corners = np.array([[0, 0], [SIZE, 0], [SIZE, SIZE], [0, SIZE]]) + np.array([EASTING, NORTHING])
+    return fit_horizon(points, FitSettings(core="none", max_iterations=0), corners)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_holes_in_groups_on_a_rugged_surface_take_a_finer_field(seed, monkeypatch):
+    """What holes near to each other tell of short waves is not noise: the field between them is nearer to the truth."""
+    points, at = groups_of_holes(seed, rugged(seed))
+    fine = field_alone(points)
+    monkeypatch.setattr("geofit.fitting.net.CLOSE", EVEN)
+    even = field_alone(points)
+    assert longest_span(fine.model.net.base) < 0.3 < longest_span(even.model.net.base)
+    assert fine.diagnostics["noise"] < 0.85 * even.diagnostics["noise"]
+    truth = rugged(seed)(*at.T)
+    assert rms(fine.elevation(*at.T) - truth) < 0.96 * rms(even.elevation(*at.T) - truth)
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_holes_in_groups_on_a_smooth_surface_take_no_more_control_points(seed):
+    points, _ = groups_of_holes(seed, hills(seed))
+    assert longest_span(field_alone(points).model.net.base) > 0.4
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 0.6, 2.0])
