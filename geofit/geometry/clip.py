@@ -14,6 +14,8 @@ Ints = NDArray[np.int64]
 
 #: Cells of a raster along the longer side of an outline.
 CELLS = 256
+#: The corner after each corner of a triangle.
+NEXT = [1, 2, 0]
 #: Vertices nearer to the outline than this (metres) are on it.
 ON = 1e-7
 
@@ -143,10 +145,14 @@ class _Rows:
         return self._room[: self._count]
 
     def add(self, row: NDArray[Any]) -> None:
-        if self._count == len(self._room):
-            self._room = np.concatenate([self._room, np.empty((self._count + 1, *row.shape), self._room.dtype)])
-        self._room[self._count] = row
-        self._count += 1
+        self.extend(row[None])
+
+    def extend(self, rows: NDArray[Any]) -> None:
+        count = self._count + len(rows)
+        if count > len(self._room):
+            self._room = np.concatenate([self._room, np.empty((count, *rows.shape[1:]), self._room.dtype)])
+        self._room[self._count : count] = rows
+        self._count = count
 
 
 class _Work:
@@ -213,35 +219,51 @@ class _Work:
         crossed = np.flatnonzero((least < 0) & (most > 0))
         ahead = along[self.triangles[crossed]]
         crossed = crossed[(ahead.max(axis=1) > 0) & (ahead.min(axis=1) < length)]
-        # Plain numbers from here on: one at a time, an array's elements cost several times as much.
-        used = np.unique(self.triangles[crossed])
-        offs, alongs, signs = (
-            dict(zip(used.tolist(), values[used].tolist(), strict=True)) for values in (off, along, sign)
-        )
-        divided: dict[tuple[int, int], tuple[int, float]] = {}
-        for k, numbers in zip(crossed.tolist(), self.triangles[crossed].tolist(), strict=True):
-            ends = [alongs[n] for n in numbers if signs[n] == 0]
-            cuts = []
-            for i in range(3):
-                a, b = numbers[i], numbers[(i + 1) % 3]
-                if signs[a] * signs[b] < 0:
-                    t = offs[a] / (offs[a] - offs[b])
-                    ends.append(alongs[a] + t * (alongs[b] - alongs[a]))
-                    cuts.append(i)
-            if not 0 < 0.5 * (ends[0] + ends[1]) < length:
-                continue
-            halves = [k]
-            for i in cuts:
-                a, b = numbers[i], numbers[(i + 1) % 3]
-                key = (min(a, b), max(a, b))
-                if key not in divided:
-                    t = offs[key[0]] / (offs[key[0]] - offs[key[1]])
-                    first, second = self.points[key[0]], self.points[key[1]]
-                    divided[key] = self._new(first + t * (second - first)), t
-                number, t = divided[key]
-                pieces = [(h, self.triangles[h].tolist()) for h in halves]
-                piece, at = next((h, at) for h, at in pieces if a in at and b in at)
-                halves.append(self._halve(piece, at.index(key[0]), at.index(key[1]), number, t))
+        numbers = self.triangles[crossed]
+        signs, offs, alongs = sign[numbers], off[numbers], along[numbers]
+        cutting = signs * signs[:, NEXT] < 0
+        t = np.divide(offs, offs - offs[:, NEXT], out=np.zeros_like(offs), where=cutting)
+        # Of each triangle the side enters and leaves through two edges, or through an edge and a corner.
+        ends = np.where(cutting, alongs + t * (alongs[:, NEXT] - alongs), 0.0) + np.where(signs == 0, alongs, 0.0)
+        middle = 0.5 * ends.sum(axis=1)
+        within = (middle > 0) & (middle < length)
+        self._cut(crossed[within], cutting[within], off)
+
+    def _cut(self, crossed: Ints, cutting: NDArray[np.bool_], off: Floats) -> None:
+        """Divide triangles at the one or two edges, (m, 3), along which ``off`` of all vertices changes its sign."""
+        row, edge = np.nonzero(cutting)
+        numbers = self.triangles[crossed[row]]
+        a, b = (numbers[np.arange(len(row)), corner % 3] for corner in (edge, edge + 1))
+        low, high = np.minimum(a, b), np.maximum(a, b)
+        # Both triangles at an edge get one vertex.
+        _, first, which = np.unique(low * len(self.points) + high, return_index=True, return_inverse=True)
+        known = np.sort(first)
+        t = off[low] / (off[low] - off[high])
+        start, end = self.points[low[known]], self.points[high[known]]
+        number = len(self.points) + np.searchsorted(known, first)[which]
+        self._points.extend(start + t[known, None] * (end - start))
+        from_low = np.where(a == low, edge, (edge + 1) % 3)
+        to_high = np.where(a == low, (edge + 1) % 3, edge)
+        second = np.flatnonzero(np.diff(row, prepend=-1) == 0)
+        one = np.flatnonzero(np.diff(row, prepend=-1) != 0)
+        new = len(self.triangles) + np.arange(len(row))
+        for rows in (self._triangles, self._uv, self._parent):
+            rows.extend(rows.filled[crossed[row]])
+        self._halve_all(crossed[row[one]], new[one], from_low[one], to_high[one], number[one], t[one])
+        # The second edge is of the half that kept the corner of both edges.
+        before = low[second - 1]
+        kept = (before == a[second]) | (before == b[second])
+        piece = np.where(kept, crossed[row[second]], new[second - 1])
+        for rows in (self._triangles, self._uv, self._parent):
+            rows.filled[new[second]] = rows.filled[piece]
+        self._halve_all(piece, new[second], from_low[second], to_high[second], number[second], t[second])
+
+    def _halve_all(self, k: Ints, new: Ints, i: Ints, j: Ints, number: Ints, t: Floats) -> None:
+        """Divide triangles k at vertices on their edges (i, j), at t from i; ``new`` are copies of them."""
+        triangles, corners = self.triangles, self.uv
+        uv = corners[k, i] + t[:, None] * (corners[k, j] - corners[k, i])
+        triangles[k, j] = triangles[new, i] = number
+        corners[k, j] = corners[new, i] = uv
 
     def _new(self, point: Floats, plan: Floats | None = None) -> int:
         point = np.array(point)
