@@ -39,7 +39,7 @@ def move_note(patch: str, i: int, j: int, dz: float, aside: Sequence[float]) -> 
 
 
 def require_finite(value: float, name: str) -> None:
-    """Refuse a length that is no finite number, or too large."""
+    """Refuse a length that is not finite, or too large."""
     if not is_finite(value) or abs(value) > LARGEST:
         raise FitError(
             message(
