@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QRectF, QSignalBlocker, QSize, Qt
-from PySide6.QtGui import QPainter, QPaintEvent
+from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QCheckBox, QComboBox, QFormLayout, QGroupBox, QSizePolicy, QSlider, QWidget
 
 from geofit.gui.view3d.annotations import theme_of
@@ -76,7 +76,16 @@ class LayerForm(QGroupBox):
         # A row that was hidden a moment ago does not tell the layouts of its new height.
         self._form.invalidate()
         self.updateGeometry()
+        self._stand()
         del blockers
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Take the height that rows have which are wrapped at this width."""
+        super().resizeEvent(event)
+        self._stand()
+
+    def _stand(self) -> None:
+        self.setMinimumHeight(max(self.heightForWidth(self.width()), 0))
 
 
 class _LegendBox(QWidget):
