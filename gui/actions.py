@@ -91,6 +91,8 @@ _PLAIN: dict[str, _Spec] = {
     "stop": (QT_TRANSLATE_NOOP("Actions", "&Stop the task"), "Esc", "", "cancel"),
     "rock_volume": (QT_TRANSLATE_NOOP("Actions", "&Rock volume…"), None,
                     QT_TRANSLATE_NOOP("Actions", "Pores, throats and permeability of a scanned rock core"), ""),
+    "survey": (QT_TRANSLATE_NOOP("Actions", "Survey of &passages…"), None,
+               QT_TRANSLATE_NOOP("Actions", "Centre line, loops, walls and volume of a cave, adit or tunnel"), ""),
     "tutorial": (QT_TRANSLATE_NOOP("Actions", "&Tutorial"), "F1", "", ""),
     "shortcuts": (QT_TRANSLATE_NOOP("Actions", "&Keyboard shortcuts"), "Ctrl+/", "", ""),
     "system_report": (QT_TRANSLATE_NOOP("Actions", "&System report"), None, "", ""),

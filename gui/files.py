@@ -20,6 +20,7 @@ from geofit.gui.fitting import Fitting
 from geofit.gui.preferences import Preferences
 from geofit.gui.session import Session
 from geofit.gui.translate import translated
+from geofit.io.survey_kinds import SURVEY_ENDINGS, is_survey
 from geofit.project.body_saving import saved_body
 from geofit.project.journal import Unfinished, unfinished
 from geofit.project.provenance import Provenance
@@ -40,16 +41,21 @@ __all__ = ["Files"]
 
 _LOG = logging.getLogger(__name__)
 PROJECT = ".geofit"
+SURVEYS = " ".join(f"*{ending}" for ending in SURVEY_ENDINGS)
+OPENED = f"*{PROJECT} *.toml {SURVEYS}"
 
 
 class Files(QObject):
-    """What the File menu does with sites and projects. ``reported(text)`` says in the status bar what was done.
+    """What the File menu does with sites and projects.
 
-    ``built(name, rule, order)`` comes for each horizon that was built while a site was imported, once it is open.
+    ``reported(text)`` says in the status bar what was done; ``built(name, rule, order)`` comes for each horizon that was
+    built while a site was imported, once it is open; ``survey_chosen(path)``: a survey of passages is to be opened,
+    which leaves the site as it is.
     """
 
     reported = Signal(str)
     built = Signal(str, object, object)
+    survey_chosen = Signal(object)
 
     def __init__(
         self, session: Session, activity: Activity, fitting: Fitting, preferences: Preferences, window: QWidget
@@ -61,18 +67,29 @@ class Files(QObject):
         self._after_saving: Callable[[], object] | None = None
 
     def ask_open(self) -> None:
-        """Ask for a project or a site file, and open it."""
+        """Ask for a project, a site file or a survey, and open it."""
         name, _ = QFileDialog.getOpenFileName(
             self._window,
-            self.tr("Open a project or a site file"),
+            self.tr("Open a project, a site file or a survey"),
             self._preferences.folder,
-            self.tr("Projects and site files (*.geofit *.toml);;All files (*)"),
+            ";;".join(
+                (
+                    self.tr("Projects, site files and surveys ({kinds})").format(kinds=OPENED),
+                    self.tr("Projects and site files (*.geofit *.toml)"),
+                    self.tr("Surveys of passages ({kinds})").format(kinds=SURVEYS),
+                    self.tr("All files (*)"),
+                )
+            ),
         )
         if name:
             self.open(Path(name))
 
     def open(self, path: Path) -> None:
-        """Open a project or a site file, after asking whether to save what is open."""
+        """Open a project or a site file, after asking whether to save what is open; or a survey beside it."""
+        if is_survey(path):
+            self._preferences.folder = str(path.resolve().parent)
+            self.survey_chosen.emit(path)
+            return
         self.leave(lambda: self._open(path))
 
     def open_sample(self, folder: Path | None = None) -> None:

@@ -32,6 +32,7 @@ from geofit.gui.preferences import Preferences
 from geofit.gui.selecting import Selecting
 from geofit.gui.session import Session
 from geofit.gui.showing import Showing
+from geofit.gui.surveys import Surveys
 from geofit.gui.theme import apply_theme, is_dark, set_text_size
 from geofit.gui.view3d.mouse import Scheme
 from geofit.gui.worker import finish_all
@@ -43,7 +44,8 @@ __all__ = ["MainWindow"]
 
 #: Actions that need no open site.
 _ALWAYS = {
-    "new", "open", "sample", "quit", "preferences", "tutorial", "shortcuts", "rock_volume", "system_report", "about",
+    "new", "open", "sample", "quit", "preferences", "tutorial", "shortcuts", "rock_volume", "survey", "system_report",
+    "about",
 }  # fmt: skip
 #: What needs a horizon: a site may have bodies alone.
 _OF_HORIZONS = {
@@ -91,6 +93,7 @@ class MainWindow(QMainWindow):
         self.context = ContextMenus(document, self.panels, self.fitting, self.selecting, self.actions_, self)
         self.bodies = Bodies(session, self.activity, self.fitting, self.showing, self.panels, preferences, self)
         self.morphing = Morphing(session.document, self.activity, self.fitting, self.bodies, self.panels, self)
+        self.surveys = Surveys(session.document, self.activity, self.bodies, self)
         self.help = Help(self)
         self._connect_actions()
         self._connect_panels()
@@ -133,6 +136,7 @@ class MainWindow(QMainWindow):
         finish_all(helpers=False)
         for part in (
             self.comparing_fits, self.showing, self.selecting, self.fitting, self.living, self.bodies, self.morphing,
+            self.surveys,
         ):  # fmt: skip
             part.close()
         for end in self._ends:
@@ -221,6 +225,7 @@ class MainWindow(QMainWindow):
             "tutorial": self.help.tutorial,
             "shortcuts": lambda: self.help.shortcuts(self.menuBar()),
             "rock_volume": self.help.rock_volume,
+            "survey": self.surveys.open,
             "system_report": self.help.system_report,
             "about": self.help.about,
         }.items():
@@ -248,6 +253,7 @@ class MainWindow(QMainWindow):
         panels.start.open_requested.connect(files.ask_open)
         panels.start.import_requested.connect(files.import_files)
         panels.start.file_chosen.connect(files.open)
+        files.survey_chosen.connect(self.surveys.open)
         panels.fit.applied.connect(fitting.set_settings)
         panels.fit.fit_requested.connect(fitting.fit)
         panels.fit.fit_all_requested.connect(fitting.fit_all)
@@ -279,6 +285,7 @@ class MainWindow(QMainWindow):
         self.showing.drawing.failed.connect(lambda error: self.fail(self.tr("Drawing"), error))
         for part in (
             self.files, self.delivering, self.ordering, self.fitting, self.living, self.bodies, self.morphing,
+            self.surveys,
         ):  # fmt: skip
             part.reported.connect(self.tell)
         self.fitting.displaced.connect(self.showing.show_cuts)

@@ -52,7 +52,7 @@ class Menus(QObject):
         view.addMenu(_group_menu(self.tr("&Language"), actions.languages.actions(), window))
         horizon = "fit fit_all | build_horizon | examine compare_fits worst | order check_order separate | stop"
         self._menu(bar.addMenu(self.tr("Hori&zon")), horizon)
-        self._menu(bar.addMenu(self.tr("&Tools")), "measure section | rock_volume")
+        self._menu(bar.addMenu(self.tr("&Tools")), "measure section | rock_volume survey")
         self._menu(bar.addMenu(self.tr("&Help")), "tutorial shortcuts | system_report about")
         self.tools = self._tool_bar()
 

@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 
 from geofit import __version__
 from geofit.gui.icons import application_icon, palette_icon
+from geofit.io.survey_kinds import is_survey
 
 __all__ = ["StartPage"]
 
@@ -56,7 +57,7 @@ class StartPage(QWidget):
         self.recent.itemClicked.connect(self._choose)
         self._none = QLabel(self.tr("Projects that you open will be listed here."))
         self._none.setEnabled(False)
-        self._drop = _DropField(self.tr("Drop tables, drawings, grids or a project here"))
+        self._drop = _DropField(self.tr("Drop tables, drawings, grids, a survey or a project here"))
 
         left = QVBoxLayout()
         left.setSpacing(8)
@@ -119,11 +120,11 @@ class StartPage(QWidget):
         self._drop.light_up(False)
 
     def dropEvent(self, event: QDropEvent) -> None:  # noqa: N802
-        """Open a project or site file; import anything else."""
+        """Open a project, a site file or a survey of passages; import anything else."""
         self._drop.light_up(False)
         files = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
         event.acceptProposedAction()
-        if len(files) == 1 and files[0].suffix in (".geofit", ".toml"):
+        if len(files) == 1 and (files[0].suffix in (".geofit", ".toml") or is_survey(files[0])):
             self.file_chosen.emit(files[0])
         elif files:
             self.import_requested.emit(files)

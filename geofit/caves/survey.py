@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,6 +117,14 @@ class Survey:
                     survey=Untranslated(self.name),
                 )
             )
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "fixed": dict(self.fixed)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        # A survey from another process is as read-only as one made here.
+        self.__dict__.update(state)
+        self.__post_init__()
 
     @property
     def length(self) -> float:

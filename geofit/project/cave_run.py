@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from geofit.caves.uncertainty import VolumeEstimate
     from geofit.implicit.mesh import TriangleMesh
 
-__all__ = ["CaveRun", "read_survey", "run_cave"]
+__all__ = ["CaveRun", "cut_passages", "measure_passages", "read_survey", "run_cave", "write_passages"]
 
 #: Spacing of the triangles, in units of the spacing that resolves most sections.
 COARSER = 3.0
@@ -153,10 +153,32 @@ def run_cave(
     InputError
         If a file cannot be written.
     """
+    run = measure_passages(
+        survey, radius=radius, spacing=spacing, excavation=excavation, horizons=horizons, progress=progress
+    )
+    tell(progress, "files", 0.9)
+    return write_passages(run, out)
+
+
+def measure_passages(
+    survey: Survey,
+    *,
+    radius: float | None = None,
+    spacing: float | None = None,
+    excavation: Survey | None = None,
+    horizons: Mapping[str, Horizon] | None = None,
+    progress: Progress | None = None,
+) -> CaveRun:
+    """Adjust a survey and make its passages a body, as :func:`run_cave` does, but write nothing.
+
+    Raises
+    ------
+    SurveyError, SettingsError
+        As for :func:`geofit.centreline_body`.
+    """
     from geofit.caves.adjust import adjust_survey
     from geofit.caves.body import centreline_body
     from geofit.caves.clearance import clearance, excavation_points
-    from geofit.caves.strata import strata
     from geofit.caves.uncertainty import volume_estimate
 
     tell(progress, "adjust", 0.0)
@@ -167,24 +189,44 @@ def run_cave(
     tell(progress, "triangles", 0.5)
     step = COARSER * body.fine if spacing is None else spacing
     triangles = body.triangulate(step)
-    parts: tuple[Stratum, ...] = ()
-    if horizons:
-        tell(progress, "strata", 0.7)
-        parts = strata(body, horizons)
     away = None
     if excavation is not None:
         tell(progress, "clearance", 0.8)
         points, size = excavation_points(adjust_survey(excavation))
         away = clearance(body, points, polyline=False, radius=size)
-    tell(progress, "files", 0.9)
-    name = Path(survey.name).stem
+    run = CaveRun(body, volume, step, triangles, (), (), away)
+    return cut_passages(run, horizons, progress) if horizons else run
+
+
+def cut_passages(run: CaveRun, horizons: Mapping[str, Horizon], progress: Progress | None = None) -> CaveRun:
+    """Return the run with its passages cut by horizons, from the top down.
+
+    Raises
+    ------
+    SettingsError
+        If there is no horizon.
+    """
+    from geofit.caves.strata import strata
+
+    tell(progress, "strata", 0.85)
+    return replace(run, strata=strata(run.body, horizons))
+
+
+def write_passages(run: CaveRun, out: Path) -> CaveRun:
+    """Write the files of a run as :func:`run_cave` names them; return the run with them.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be written.
+    """
+    name = Path(run.adjusted.survey.name).stem
     stem = folder_for(out) / file_stems([name])[name]
-    tables = (*_write_tables(body, stem), *_write_cuts(parts, away, stem))
+    tables = (*_write_tables(run.body, stem), *_write_cuts(run.strata, run.clearance, stem))
     figures = stem.with_name(f"{stem.name}.json")
-    files = (figures, *tables, *write_triangles(triangles, stem))
-    run = CaveRun(body, volume, step, triangles, files, parts, away)
+    files = (figures, *tables, *write_triangles(run.triangles, stem))
     write_figures(run.figures(), figures)
-    return run
+    return replace(run, files=files)
 
 
 def _write_tables(body: PassageBody, stem: Path) -> tuple[Path, ...]:

@@ -35,6 +35,7 @@ class TaskDialog(QDialog):
     ) -> None:
         super().__init__(parent)
         self._task: Task | None = None
+        self._turn = 0
         self._focused: QWidget | None = None
         self.fields: tuple[QWidget, ...] = ()
         self.message, self.sign = QLabel(), QLabel()
@@ -97,7 +98,8 @@ class TaskDialog(QDialog):
             on_progress=self._progress,
             on_cancelled=on_stopped,
         )
-        self._task.ended.connect(self._rested)
+        self._turn += 1
+        self._task.ended.connect(lambda turn=self._turn: self._rested(turn))
         self._patience.start(PATIENCE)
         self.refresh()
 
@@ -143,7 +145,9 @@ class TaskDialog(QDialog):
         self.progress.setVisible(self.running)
         self.stop.setVisible(self.running)
 
-    def _rested(self) -> None:
+    def _rested(self, turn: int) -> None:
+        if turn != self._turn:
+            return  # what was done has begun the next task
         self._task = None
         self._patience.stop()
         self._show_progress()

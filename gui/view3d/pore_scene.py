@@ -7,12 +7,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtGui import QColor
-from PySide6.QtWidgets import QVBoxLayout, QWidget
+from PySide6.QtWidgets import QWidget
 
-from geofit.gui.theme import is_dark
-from geofit.gui.view3d.camera import framed
-from geofit.gui.view3d.canvas import Canvas
-from geofit.gui.view3d.opengl import require_opengl
+from geofit.gui.view3d.small_scene import SmallScene
 from geofit.project.pore_view import PoreView
 
 __all__ = ["Colour", "PoreScene"]
@@ -26,8 +23,8 @@ CONNECTED = ("#b5452c", "#d9a441", "#5aa6a6", "#0b5c8a")
 SIDES, RINGS = 8, 12
 
 
-class PoreScene(QWidget):
-    """A 3D view of a :class:`PoreView`; ``shown`` holds the names of what is drawn.
+class PoreScene(SmallScene):
+    """A 3D view of a :class:`PoreView`: "pores", "throats" and "surface", of which the first two are the "network".
 
     Raises
     ------
@@ -36,35 +33,17 @@ class PoreScene(QWidget):
     """
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        require_opengl()
-        super().__init__(parent)
+        super().__init__(("network", "surface"), parent)
         self.setAccessibleName(self.tr("Pores in space"))
-        self.canvas = Canvas(self)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.canvas)
-        self.setFocusProxy(self.canvas)
         self._view: PoreView | None = None
-        self.actors: dict[str, Any] = {}
-        self._frame: Any = None
-        self._visible = {"network": True, "surface": True}
         self.colour: Colour = "radius"
         self.limits = (0.0, 1.0)
-        dark = is_dark(self.palette())
-        self.canvas.set_background_colour(QColor("#1a1f24" if dark else "#ffffff"))
-
-    @property
-    def shown(self) -> tuple[str, ...]:
-        """What is drawn and seen: "pores", "throats", "surface"."""
-        return tuple(name for name, actor in self.actors.items() if actor.GetVisibility())
 
     def show_view(self, view: PoreView) -> None:
         """Draw another network and surface, and move the camera so that all is seen."""
         import pyvista as pv
 
-        for actor in self.actors.values():
-            self.canvas.renderer.RemoveActor(actor)
-        self.actors.clear()
+        self.clear()
         self._view = view
         network = view.network
         centre = (network.pores.centre + 0.5) * network.edges
@@ -73,61 +52,25 @@ class PoreScene(QWidget):
         ball = pv.Sphere(radius=1.0, theta_resolution=RINGS, phi_resolution=RINGS)
         balls["pore"] = np.arange(len(centre))
         if len(centre):
-            self._add("pores", balls.glyph(scale="size", orient=False, geom=ball), 1.0)
+            self.add("pores", balls.glyph(scale="size", orient=False, geom=ball), "network")
         if len(network.throats):
-            self._add("throats", _tubes(centre, network.throats.pores, network.throats.radius), 1.0)
+            self.add("throats", _tubes(centre, network.throats.pores, network.throats.radius), "network")
         if len(view.triangles):
             surface = pv.PolyData.from_regular_faces(view.vertices, view.triangles)
             surface["pore"] = view.vertex_pore
-            self._add("surface", surface, 0.25)
+            self.add("surface", surface, "surface", 0.25)
         self._paint()
-        box = np.array([[0.0] * 3, np.array(network.shape) * network.edges])
-        self._outline(box)
-        self.canvas.look(framed(self.canvas.viewpoint, box, self.width() / max(self.height(), 1)))
+        self.frame(np.array([[0.0] * 3, np.array(network.shape) * network.edges]))
 
     def set_colour(self, colour: Colour) -> None:
         """Colour by the radius of pores in voxels, or by the axes along which they percolate."""
         self.colour = colour
         self._paint()
 
-    def set_visible(self, part: str, visible: bool) -> None:
-        """Show or hide the "network" or the "surface"."""
-        self._visible[part] = visible
-        for name, actor in self.actors.items():
-            actor.SetVisibility(self._visible["surface" if name == "surface" else "network"])
-        self.canvas.render()
-
     def values(self) -> Floats:
         """Return what pores are coloured by (n,): radii in voxels, or numbers of axes."""
         assert self._view is not None
         return self._view.network.pores.radius if self.colour == "radius" else self._view.axes.astype(np.float64)
-
-    def close(self) -> bool:
-        """Let go of the view's context."""
-        self.canvas.close()
-        return super().close()
-
-    def _add(self, name: str, mesh: Any, opacity: float) -> None:
-        import pyvista as pv
-
-        mapper = pv.DataSetMapper(mesh)
-        actor = pv.Actor(mapper=mapper)
-        actor.prop.opacity = opacity
-        actor.SetVisibility(self._visible["surface" if name == "surface" else "network"])
-        self.canvas.renderer.AddActor(actor)
-        self.actors[name] = actor
-
-    def _outline(self, box: Floats) -> None:
-        """Draw the edges of the sample."""
-        import pyvista as pv
-
-        if self._frame is not None:
-            self.canvas.renderer.RemoveActor(self._frame)
-        (x0, y0, z0), (x1, y1, z1) = box.tolist()
-        self._frame = pv.Actor(mapper=pv.DataSetMapper(pv.Box((x0, x1, y0, y1, z0, z1)).outline()))
-        self._frame.prop.color = "#8a939c"
-        self._frame.prop.lighting = False
-        self.canvas.renderer.AddActor(self._frame)
 
     def _paint(self) -> None:
         if self._view is None or not len(self._view.network.pores):

@@ -1,0 +1,69 @@
+"""Surveys of passages: opened in a window of their own; on request their body becomes one of the open site."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtWidgets import QWidget
+
+from geofit.data.files import file_stems
+from geofit.gui.activity import Activity
+from geofit.gui.bodies import Bodies
+from geofit.gui.dialogs.survey import SurveyDialog
+from geofit.project.cave_run import CaveRun
+from geofit.project.cave_view import passage_mesh
+from geofit.project.document import Document
+from geofit.surfaces.protocol import Surface
+
+__all__ = ["Surveys"]
+
+
+class Surveys(QObject):
+    """Opens surveys; ``reported(text)`` says in the status bar what was done. ``dialog`` is the open one, or None."""
+
+    reported = Signal(str)
+
+    def __init__(self, document: Document, activity: Activity, bodies: Bodies, window: QWidget) -> None:
+        super().__init__(window)
+        self._document, self._activity, self._bodies, self._window = document, activity, bodies, window
+        self.dialog: SurveyDialog | None = None
+
+    def open(self, path: Path | None = None) -> None:
+        """Open a survey in the dialog, or the dialog alone."""
+        if self.dialog is None:
+            dialog = SurveyDialog(self._horizons, lambda: self._document.is_open, self._window)
+            dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+            dialog.finished.connect(self._gone)
+            dialog.add_requested.connect(self._add)
+            self.dialog = dialog
+            dialog.show()
+        self.dialog.raise_()
+        self.dialog.activateWindow()
+        if path is not None and not self.dialog.running:
+            self.dialog.read(path)
+
+    def close(self) -> None:
+        """Close the dialog that is open."""
+        if self.dialog is not None:
+            self.dialog.reject()
+
+    def _horizons(self) -> dict[str, Surface]:
+        # The model behind the patches need not travel to another process.
+        return {name: surface.with_(model=None) for name, surface in self._document.surfaces().items()}
+
+    def _add(self, run: CaveRun) -> None:
+        """Write the body beside the site, and take it as a body of closed triangles: one step that can be undone."""
+        name = Path(run.adjusted.survey.name).stem
+        folder = self._document.folder or Path.cwd()
+        file = folder / f"{file_stems([name])[name]}_passages.ply"
+        title = self.tr("Add the body of {name}").format(name=run.adjusted.survey.name)
+
+        def added(written: Path) -> None:
+            self._bodies.take_mesh(written)
+            self.reported.emit(self.tr("Wrote {file}; its body is being added.").format(file=written.name))
+
+        self._activity.do(title, passage_mesh, run, file, on_done=added)
+
+    def _gone(self, _: int) -> None:
+        self.dialog = None
