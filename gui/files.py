@@ -48,8 +48,8 @@ OPENED = f"*{PROJECT} *.toml {SURVEYS}"
 class Files(QObject):
     """What the File menu does with sites and projects.
 
-    ``reported(text)`` says in the status bar what was done; ``built(name, rule, order)`` comes for each horizon that was
-    built while a site was imported, once it is open; ``survey_chosen(path)``: a survey of passages is to be opened,
+    ``reported(text)`` says in the status bar what was done; ``built(name, rule, order)`` comes for each horizon that
+    was built while a site was imported, once it is open; ``survey_chosen(path)``: a survey of passages is to be opened,
     which leaves the site as it is.
     """
 
