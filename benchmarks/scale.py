@@ -153,7 +153,10 @@ def side_by_side(count: int) -> Figures:
     one, alone = used(start), time.perf_counter() - wall
     start, wall = used(), time.perf_counter()
     fit_site(site, scheduler="local", workers=2)
-    return {"one": one, "two": used(start), "wall_one": alone, "wall_two": time.perf_counter() - wall}
+    figures = {"one": one, "two": used(start), "wall_one": alone, "wall_two": time.perf_counter() - wall}
+    start, wall = used(), time.perf_counter()
+    fit_site(site, scheduler="local", workers=4)
+    return {**figures, "four": used(start), "wall_four": time.perf_counter() - wall}
 
 
 def distances(n: int) -> Figures:
@@ -316,6 +319,9 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
         libraries, and they share caches and memory. Half of their seconds is the wall time of two free processors; the
         measured one is that of this run{_beside(many)}. *1e4 horizons*: {each * 1e4 / 3600:.1f} h of one processor,
         {each * 1e4 / 64:.0f} s on 64 if nothing else limits them.""")
+    if "four" in many:
+        say(f"""Four processes take {many["four"] / many["one"] - 1:.0%} more of the processors than one, and
+            {many["wall_four"] / many["wall_one"]:.2f} of its wall time.""")
     say("""The folds of a cross-validation that need a fit (sections of a fold, groups of fewer than 30 points) go the
         same way with `--scheduler`; from Python so do the holes left out of a body (`leave_one_hole_out`) and its
         simulations (`BodyFit.volumes`). Errors are the same to the last bit, standard deviations and volumes to
