@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-__all__ = ["apply", "assemble", "combine", "incomplete_cholesky", "precondition", "spread", "step_along", "sum_up"]
+__all__ = ["apply", "assemble", "combine", "incomplete_cholesky", "precondition", "step_along", "sum_up", "to_voxels"]
 
 
 @njit(cache=True)
@@ -95,7 +95,7 @@ def sum_up(piece: NDArray[np.int32], values: NDArray[np.float64], sums: NDArray[
 
 
 @njit(cache=True)
-def spread(piece: NDArray[np.int32], of_piece: NDArray[np.float64], out: NDArray[np.float64]) -> None:
+def to_voxels(piece: NDArray[np.int32], of_piece: NDArray[np.float64], out: NDArray[np.float64]) -> None:
     """Add the value of its piece to each row."""
     for row in range(len(out)):
         out[row] += of_piece[piece[row]]

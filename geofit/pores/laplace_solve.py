@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.pores.laplace_loops import apply, combine, incomplete_cholesky, precondition, spread, step_along, sum_up
+from geofit.pores.laplace_loops import apply, combine, incomplete_cholesky, precondition, step_along, sum_up, to_voxels
 
 __all__ = ["conjugate_gradients", "pieces_in_blocks"]
 
@@ -62,7 +62,7 @@ def conjugate_gradients(
     def improve() -> float:
         precondition(neighbour, conductance, pivot, residual, z)
         sum_up(piece, residual, sums)
-        spread(piece, solve(sums), z)
+        to_voxels(piece, solve(sums), z)
         return float((residual * z).sum())
 
     x, residual = start.copy(), source.copy()
