@@ -80,7 +80,8 @@ def laplace_permeability(volume: RockVolume, *, progress: Progress | None = None
     """
     from scipy import ndimage
 
-    from geofit.pores.laplace_loops import assemble, conjugate_gradients
+    from geofit.pores.laplace_loops import assemble
+    from geofit.pores.laplace_solve import conjugate_gradients, pieces_in_blocks
 
     paths = connectivity(volume).percolates
     label: NDArray[np.int32] = np.asarray(ndimage.label(volume.pore)[0])
@@ -111,7 +112,8 @@ def laplace_permeability(volume: RockVolume, *, progress: Progress | None = None
         number.ravel()[order] = np.arange(len(order))
         links, diagonal, source = assemble(weights, number, order, axis, edges)
         start = 1.0 - (np.unravel_index(order, volume.shape)[axis] + 0.5) / volume.shape[axis]
-        flow, steps = conjugate_gradients(links, diagonal, source[0], start, _TOLERANCE, 5000)
+        piece = pieces_in_blocks(links[0], order, volume.shape)
+        flow, steps = conjugate_gradients(links, diagonal, source[0], piece, start, _TOLERANCE, 5000)
         if steps < 0:
             raise VolumeError(
                 message(

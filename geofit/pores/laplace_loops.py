@@ -1,4 +1,4 @@
-"""Compiled assembly and solution of the Laplace equation on pore voxels."""
+"""Compiled loops over pore voxels: assembly of the Laplace equation, and the steps of its solution."""
 
 from __future__ import annotations
 
@@ -6,10 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-__all__ = ["assemble", "conjugate_gradients"]
-
-#: Steps between two looks at the error.
-_LOOK = 25
+__all__ = ["apply", "assemble", "combine", "incomplete_cholesky", "precondition", "step_along", "sum_up", "to_voxels"]
 
 
 @njit(cache=True)
@@ -53,76 +50,59 @@ def assemble(
 
 
 @njit(cache=True)
-def conjugate_gradients(
-    links: tuple[NDArray[np.int32], NDArray[np.float64]],
-    diagonal: NDArray[np.float64],
-    source: NDArray[np.float64],
-    start: NDArray[np.float64],
-    tolerance: float,
-    most: int,
-) -> tuple[float, int]:
-    """Solve with an incomplete Cholesky factor without fill as preconditioner.
-
-    The flow is the energy of the pressures: its error is of second order in theirs, the square of their error in the
-    norm of the matrix. What the last steps took off that bounds what is left (Hestenes & Stiefel 1952). A residual
-    says less: a rock lets a thousandth of its faces' conductance through.
-
-    Parameters
-    ----------
-    source : ndarray, shape (n,)
-        Conductances to the face of pressure 1.
-    tolerance : float
-        Largest relative error of the flow.
-
-    Returns
-    -------
-    flow : float
-    steps : int
-        -1 if ``most`` steps were not enough.
-    """
-    neighbour, conductance = links
-    n = len(diagonal)
-    pivot = np.empty(n)
-    for row in range(n):
+def incomplete_cholesky(
+    neighbour: NDArray[np.int32], conductance: NDArray[np.float64], diagonal: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the pivots of the incomplete Cholesky factor without fill."""
+    pivot = np.empty(len(diagonal))
+    for row in range(len(diagonal)):
         value = diagonal[row]
         for d in range(3):
             other = neighbour[row, d]
             if other >= 0:
                 value -= conductance[row, d] ** 2 / pivot[other]
         pivot[row] = value
-    x = start.copy()
-    residual = source.copy()
-    _apply(neighbour, conductance, diagonal, x, residual, -1.0)
-    z = np.empty(n)
-    _precondition(neighbour, conductance, pivot, residual, z)
-    direction = z.copy()
-    image = np.empty(n)
-    product = (residual * z).sum()
-    gained, rounding = 0.0, 1e-24 * source.sum()
-    for step in range(most):
-        if step % _LOOK == 0 or product <= rounding:
-            flow = (source * (1.0 - x)).sum() - (x * residual).sum()
-            if product <= rounding or (step and gained <= tolerance * flow):
-                return flow, step
-            gained = 0.0
-        image[:] = 0.0
-        _apply(neighbour, conductance, diagonal, direction, image, 1.0)
-        alpha = product / (direction * image).sum()
-        gained += alpha * product
-        for row in range(n):
-            x[row] += alpha * direction[row]
-            residual[row] -= alpha * image[row]
-        _precondition(neighbour, conductance, pivot, residual, z)
-        new = (residual * z).sum()
-        beta = new / product
-        product = new
-        for row in range(n):
-            direction[row] = z[row] + beta * direction[row]
-    return 0.0, -1
+    return pivot
 
 
 @njit(cache=True)
-def _apply(
+def step_along(
+    x: NDArray[np.float64],
+    residual: NDArray[np.float64],
+    direction: NDArray[np.float64],
+    image: NDArray[np.float64],
+    alpha: float,
+) -> None:
+    """Move x along a direction, and the residual along its image."""
+    for row in range(len(x)):
+        x[row] += alpha * direction[row]
+        residual[row] -= alpha * image[row]
+
+
+@njit(cache=True)
+def combine(direction: NDArray[np.float64], z: NDArray[np.float64], beta: float) -> None:
+    """Put z + beta * direction in the place of the direction."""
+    for row in range(len(z)):
+        direction[row] = z[row] + beta * direction[row]
+
+
+@njit(cache=True)
+def sum_up(piece: NDArray[np.int32], values: NDArray[np.float64], sums: NDArray[np.float64]) -> None:
+    """Sum values over each piece."""
+    sums[:] = 0.0
+    for row in range(len(values)):
+        sums[piece[row]] += values[row]
+
+
+@njit(cache=True)
+def to_voxels(piece: NDArray[np.int32], of_piece: NDArray[np.float64], out: NDArray[np.float64]) -> None:
+    """Add the value of its piece to each row."""
+    for row in range(len(out)):
+        out[row] += of_piece[piece[row]]
+
+
+@njit(cache=True)
+def apply(
     neighbour: NDArray[np.int32],
     conductance: NDArray[np.float64],
     diagonal: NDArray[np.float64],
@@ -143,13 +123,14 @@ def _apply(
 
 
 @njit(cache=True)
-def _precondition(
+def precondition(
     neighbour: NDArray[np.int32],
     conductance: NDArray[np.float64],
     pivot: NDArray[np.float64],
     residual: NDArray[np.float64],
     z: NDArray[np.float64],
 ) -> None:
+    """Solve with the incomplete factor for a residual; the result is z."""
     n = len(pivot)
     for row in range(n):
         value = residual[row]
