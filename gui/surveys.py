@@ -42,6 +42,9 @@ class Surveys(QObject):
         self.dialog.activateWindow()
         if path is not None and not self.dialog.running:
             self.dialog.read(path)
+        elif path is not None:
+            text = self.tr("{file} was not opened: another survey is being computed. Stop it, or wait.")
+            self.reported.emit(text.format(file=path.name))
 
     def close(self) -> None:
         """Close the dialog that is open."""

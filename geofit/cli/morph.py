@@ -82,7 +82,7 @@ def morph(
         found = between_surveys(
             *bodies[:2], *bodies[2:], mode=mode.value, pace=pace.value, dates=dates.split(",") if dates else None,
             sd=_numbers(sd), cells=cells, spacing=spacing, align="principal" if align else None, seeds=seeds,
-            progress=progress,
+            names=[path.name for path in surveys], progress=progress,
         )  # fmt: skip
         for part in found.unreached:
             x, y, z = part.deepest.tolist()

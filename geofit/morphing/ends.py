@@ -62,15 +62,18 @@ class End:
     name: str
 
 
-def ends_of(bodies: Sequence[Any]) -> tuple[tuple[End, ...], Floats]:
+def ends_of(bodies: Sequence[Any], names: Sequence[str] | None = None) -> tuple[tuple[End, ...], Floats]:
     """Return bodies about one local origin, and its map coordinates (3,).
+
+    Errors call them by ``names``, else by their own names, else A, B, ...
 
     Raises
     ------
     MorphError
         If something is not a body, a mesh is open or inconsistent, or a body is empty or has no finite box.
     """
-    names = [str(getattr(body, "name", "") or chr(ord("A") + k)) for k, body in enumerate(bodies)]
+    if names is None:
+        names = [str(getattr(body, "name", "") or chr(ord("A") + k)) for k, body in enumerate(bodies)]
     raw = [_mesh_of(body) for body in bodies]
     for mesh, name in zip(raw, names, strict=True):
         if isinstance(mesh, TriangleMesh):

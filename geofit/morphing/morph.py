@@ -51,6 +51,7 @@ def morph(
     seeds: bool | Sequence[ArrayLike] = False,
     eps: float | None = None,
     sd: Sequence[float] | None = None,
+    names: Sequence[str] | None = None,
     progress: Progress | None = None,
 ) -> Morph:
     """Return the metamorphosis of one body into another, through more if given.
@@ -84,6 +85,8 @@ def morph(
         Weight of the area in "pde", m2; by default a quarter of the squared spacing, none where the pace is "volume".
     sd : sequence of float, optional
         Standard deviation of the surface of each survey, metres, for the uncertainty of volumes of change.
+    names : sequence of str, optional
+        What errors call the bodies; by default their own names, and A, B, ... for bodies without one.
     progress : callable, optional
         ``progress(stage, fraction)``; False stops.
 
@@ -113,10 +116,19 @@ def morph(
     5.0
     """
     bodies = (a, b, *more)
+    if names is not None and len(names) != len(bodies):
+        raise SettingsError(
+            message(
+                "morphing.names-uncounted",
+                "{given} names are given for {count} bodies: give one for each.",
+                given=len(names),
+                count=len(bodies),
+            )
+        )
     _check(bodies, mode, pace, cells, spacing, eps, sd, align, dates)
     days = dates_of(dates) if dates is not None else None
     knots = knots_of(days, len(bodies))
-    ends, origin = ends_of(bodies)
+    ends, origin = ends_of(bodies, names)
     lattice = _lattice(ends, spacing, cells)
     tell(progress, "distances", 0.0)
     samples = [_samples(end, lattice) for end in ends]

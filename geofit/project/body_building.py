@@ -210,6 +210,7 @@ def frame_of(source: MorphFrame, ends: Sequence[Any], name: str, progress: Progr
         "pace": source.pace,
         "dates": source.dates or None,
         "seeds": source.seeds,
+        "names": source.names,
     }
     made = morph(*shapes, cells=source.cells, progress=progress, **way)
     body = replace(made(source.tau), name=name)

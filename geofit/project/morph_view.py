@@ -66,7 +66,14 @@ class MorphView:
 
 def way_of(way: MorphWay, cells: int) -> dict[str, Any]:
     """Return the keywords of :func:`geofit.morph`."""
-    return {"mode": way.mode, "pace": way.pace, "dates": way.dates or None, "cells": cells, "seeds": way.seeds}
+    return {
+        "mode": way.mode,
+        "pace": way.pace,
+        "dates": way.dates or None,
+        "cells": cells,
+        "seeds": way.seeds,
+        "names": way.names,
+    }
 
 
 def previewed(way: MorphWay, shapes: Sequence[Any], *, progress: Progress) -> MorphView:

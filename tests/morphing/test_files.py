@@ -13,7 +13,7 @@ import trimesh
 import geofit
 import geofit.implicit as implicit
 from geofit.cli.main import app
-from geofit.data.errors import InputError
+from geofit.data.errors import InputError, SettingsError
 from geofit.geometry.mesh import Mesh
 from geofit.io.export.triangles import write_obj, write_ply, write_stl
 from geofit.io.export.tsurf import write_tsurf
@@ -183,6 +183,23 @@ def test_the_command_writes_what_it_names(tmp_path) -> None:
     assert {"a-b.csv", "a-b.pvd", "a-b.glb", "a-b.json", "a-b_stl", "a-b_obj", "a-b"} <= names
     triangle = trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     (tmp_path / "open.stl").write_text(triangle.export(file_type="stl_ascii"))
-    refused = CliRunner().invoke(app, ["morph", str(tmp_path / "open.stl"), asked[1], "--out", str(tmp_path / "no")])
-    assert refused.exit_code == 2
-    assert not (tmp_path / "no").exists()
+    (tmp_path / "packed.stl").write_bytes(triangle.export(file_type="stl"))
+    for name in ("open.stl", "packed.stl"):
+        refused = CliRunner().invoke(app, ["morph", str(tmp_path / name), asked[1], "--out", str(tmp_path / "no")])
+        assert refused.exit_code == 2
+        assert f"The mesh '{name}' is open: 3 edges" in " ".join(refused.output.split())
+        assert not (tmp_path / "no").exists()
+
+
+def test_solids_of_step_files_are_the_ends_of_a_metamorphosis(tmp_path, run) -> None:
+    solid = run[0].morph(0.5)
+    solid.write_step(tmp_path / "half.step")
+    half = geofit.io.read_body(tmp_path / "half.step")
+    assert half.volume == pytest.approx(solid.volume, rel=0.01)
+    m = geofit.morph(half, half, cells=24, names=["half", "half again"])
+    assert m(0.5).volume == pytest.approx(half.volume, rel=0.01)
+    (tmp_path / "cut.step").write_bytes((tmp_path / "half.step").read_bytes()[:5000])
+    with pytest.raises(InputError, match="cut"):
+        geofit.io.read_body(tmp_path / "cut.step")
+    with pytest.raises(SettingsError, match="1 names are given for 2 bodies"):
+        geofit.morph(half, half, names=["half"])
