@@ -158,7 +158,6 @@ def _assembled(
 
     count = len(peaks)
     inner, outer = inner_windows(space, pore_of, levels, count), outer_windows(space, pore_of, levels)
-    own = own_saddle(inner, space, pore_of, levels, radius_at)
     faces = np.zeros((count, 6), dtype=bool)
     faces[outer.first, outer.second] = True
     links = coo_array((np.ones(len(inner.first)), (inner.first, inner.second)), shape=(count, count))
@@ -172,6 +171,7 @@ def _assembled(
         kept[:] = True
 
     edges = np.array(volume.edges)
+    own = own_saddle(inner, space, pore_of, levels, radius_at, edges)
     centre = np.stack(np.unravel_index(peaks, volume.shape), axis=1).astype(np.int32)
     size = np.bincount(pore_of, minlength=count + 1)[1:] * edges.prod()
     radius = radius_at[levels[slots(space, peaks)]]

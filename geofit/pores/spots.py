@@ -16,6 +16,8 @@ __all__ = ["own_saddle", "widest_balls"]
 _LEAST = 500
 #: A centre may move this far from its voxel, in voxels along each axis.
 _MOVE = 0.75
+#: Third pores that are looked for in the ball of a window; more than two or three are rare.
+_THIRDS = 8
 #: A window with less than this share of the area of its own ball's section is a strip between other windows.
 _STRIP = 0.5
 
@@ -152,11 +154,14 @@ def own_saddle(
     pore_of: NDArray[np.int32],
     levels: NDArray[np.int32],
     radius_at: NDArray[np.float64],
+    edges: NDArray[np.float64],
 ) -> NDArray[np.bool_]:
     """Return which windows are throats of their own.
 
     Where three or more pores meet, two of them may touch in a strip that is widest at the edge of a third, or too thin
-    for its own ball. The way through the third pore is wider: the window is left out if that pore has windows to both.
+    for its own ball: the way through the third pore is wider, and the window is left out if that pore has windows to
+    both. So it is where the window's own ball reaches into a third pore with wider windows to both, as at the middle
+    of the faces of a body-centred pack, where four pores meet.
     """
     if not len(windows.first):
         return np.zeros(0, dtype=bool)
@@ -172,7 +177,8 @@ def own_saddle(
     pairs = list(zip(windows.first.tolist(), windows.second.tolist(), strict=True))
     for pair in pairs:
         present[pair] = present.get(pair, 0) + 1
-    for window in np.lexsort((windows.second, windows.first, widest)):
+    order = np.lexsort((windows.second, windows.first, widest))
+    for window in order:
         c = int(third[window])
         if c < 0:
             continue
@@ -180,7 +186,66 @@ def own_saddle(
         if present.get((min(a, c), max(a, c)), 0) and present.get((min(b, c), max(b, c)), 0):
             kept[window] = False
             present[a, b] -= 1
+    level_of: dict[tuple[int, int], int] = {}
+    for window in order[kept[order]]:  # the widest of a pair comes last
+        level_of[pairs[window]] = int(widest[window])
+    for window, others in enumerate(_in_own_balls(windows, space, pore_of, radius_at, edges, widest)):
+        a, b = pairs[window]
+        for c in others[others >= 0].tolist():
+            ways = level_of.get((min(a, c), max(a, c)), -1), level_of.get((min(b, c), max(b, c)), -1)
+            if min(ways) > widest[window]:
+                kept[window] = False
     return kept
+
+
+@njit(cache=True)
+def _in_own_balls(
+    windows: Windows,
+    space: PackedSpace,
+    pore_of: NDArray[np.int32],
+    radius_at: NDArray[np.float64],
+    edges: NDArray[np.float64],
+    widest: NDArray[np.int32],
+) -> NDArray[np.int64]:
+    """Return the third pores (n, _THIRDS) that the ball at the widest place of each window reaches into, then -1.
+
+    The ball reaches to the centres of the nearest rock voxels.
+    """
+    n0, n1, n2 = space.shape
+    start, voxel, axis, level = windows.start, windows.voxel, windows.axis, windows.level
+    out = np.full((len(start) - 1, _THIRDS), -1, np.int64)
+    for window in range(len(start) - 1):
+        x, y, z, count = 0.0, 0.0, 0.0, 0
+        for row in range(start[window], start[window + 1]):
+            if level[row] == widest[window]:
+                here, side = voxel[row], axis[row]
+                x += here // (n1 * n2) + 0.5 * (side == 0)
+                y += here // n2 % n1 + 0.5 * (side == 1)
+                z += here % n2 + 0.5 * (side == 2)
+                count += 1
+        x, y, z = x / count, y / count, z / count
+        # Places at its border belong to it, however sums are rounded.
+        reach = radius_at[widest[window]] + 0.5 + 1e-6
+        found = 0
+        p, q, r = reach / edges[0], reach / edges[1], reach / edges[2]
+        for i in range(max(int(np.ceil(x - p)), 0), min(int(x + p) + 1, n0)):
+            for j in range(max(int(np.ceil(y - q)), 0), min(int(y + q) + 1, n1)):
+                for k in range(max(int(np.ceil(z - r)), 0), min(int(z + r) + 1, n2)):
+                    if ((i - x) / p) ** 2 + ((j - y) / q) ** 2 + ((k - z) / r) ** 2 > 1:
+                        continue
+                    place = slot(space, (i * n1 + j) * n2 + k)
+                    if place < 0:
+                        continue
+                    other = pore_of[place] - 1
+                    if other == windows.first[window] or other == windows.second[window] or found == _THIRDS:
+                        continue
+                    known = False
+                    for m in range(found):
+                        known = known or out[window, m] == other
+                    if not known:
+                        out[window, found] = other
+                        found += 1
+    return out
 
 
 @njit(cache=True)
