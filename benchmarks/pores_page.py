@@ -32,9 +32,8 @@ One line for each acceptance test, with what is asked of it and what was measure
 test itself says so. Tests are those in `tests/pores` if no other folder is named. Some ask less than the method does: 2
 takes 200 volumes of 10 x 9 x 8 voxels, not 24³; 6 asserts examples, not the counts of 684 and 1,181 pairs; 13 no volume
 of the union; 15 no seams of blocks; 16 volumes of 18³, not 40³; 17 a thousand radii for one seed and 60 for the others.
-Not met: 10, whose pores have more links than 4; 24, Laplace's equation within 15 % on simple cubic and body-centred
-packs, and the network within 25 % on the face-centred one; 26, whose mean radius of throats is 34 % above the published
-one (at another smallest pore).
+Not met: 24, Laplace's equation within 15 % on simple cubic and body-centred packs, and the network within 25 % on the
+face-centred one; 26, whose mean radius of throats is 34 % above the published one (at another smallest pore).
 """
 _TRIED = """
 ## What was tried for Laplace's equation

@@ -78,7 +78,7 @@ def body_centred() -> Line:
         "body-centred pack, 40 voxels",
         "0.5 voxel; 4 links",
         f"{gap:.2f} voxel; {np.median(links):.0f} links (median), {100 * (links == 4).mean():.0f} % of pores with 4",
-        "test_network: body_centred_pack_has_its_radii",
+        "test_network: body_centred_pack",
     )
 
 
