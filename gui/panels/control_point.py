@@ -171,7 +171,7 @@ class ControlPointPage(QWidget):
             form.addRow(label, box)
         form.addRow(self.tr("Weight"), self.weight)
         page = QVBoxLayout(self)
-        page.setContentsMargins(8, 8, 8, 8)
+        page.setContentsMargins(5, 8, 5, 8)
         page.addLayout(form)
         page.addWidget(self.about)
         page.addStretch(1)
