@@ -21,7 +21,7 @@ from geofit.data.errors import ExactnessError, FitError
 from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite, shown
 from geofit.fitting.assemble import NetPart, divide
-from geofit.fitting.edit_words import core_ruled, move_note, moved_aside, require_finite
+from geofit.fitting.edit_words import core_ruled, move_note, moved_aside, require_finite, require_three
 from geofit.fitting.model import Model
 from geofit.fitting.skin import minimum_norm_correction
 from geofit.geometry.projection import project
@@ -78,8 +78,7 @@ def adjust(
     """
     model = _model(surface)
     require_finite(dz, "dz")
-    for value in aside:
-        require_finite(value, "aside")
+    require_three(aside, "aside")
     index, share = movable(surface, patch, i, j)
     by = model.problem.parametrization.frame.axes @ np.asarray(aside, float)
     by[2] += dz

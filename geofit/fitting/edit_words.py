@@ -9,7 +9,7 @@ from geofit.data.errors import FitError
 from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite, shown
 
-__all__ = ["core_ruled", "move_note", "moved_aside", "require_finite"]
+__all__ = ["core_ruled", "move_note", "moved_aside", "require_finite", "require_three"]
 
 
 def move_note(patch: str, i: int, j: int, dz: float, aside: Sequence[float]) -> Message:
@@ -50,6 +50,21 @@ def require_finite(value: float, name: str) -> None:
                 most=LARGEST,
             )
         )
+
+
+def require_three(values: Sequence[float], name: str) -> None:
+    """Refuse a move that is not three lengths."""
+    if len(values) != 3:
+        raise FitError(
+            message(
+                "fitting.move-not-three",
+                "{name} has {count} values; three are needed: east, north and up, metres.",
+                name=name,
+                count=len(values),
+            )
+        )
+    for value in values:
+        require_finite(value, name)
 
 
 def core_ruled() -> FitError:

@@ -178,5 +178,8 @@ def test_a_height_field_whose_control_point_moved_aside_is_not_pulled_to_points_
     near = int(np.flatnonzero(acted_on(after, *control)[0])[0])
     with pytest.raises(FitError, match="moved aside"):
         after.move_to(near)
+    for wrong, words in (((1.0, 2.0), "has 2 values"), ((float("nan"), 0.0, 0.0), "is nan"), ("abc", "is 'a'")):
+        with pytest.raises(FitError, match=words):
+            adjust(surface, *control, 0.2, wrong)
     far = int(np.linalg.norm(after.points.xyz - after.points.xyz[near], axis=1).argmax())
     assert abs(after.move_to(far).accuracy.residuals[far]) < 1e-6
