@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 from PySide6.QtCore import QSignalBlocker, Qt
-from PySide6.QtGui import QCloseEvent
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
@@ -21,7 +20,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.gui.dialogs.task_dialog import TaskDialog
+from geofit.gui.dialogs.scene_dialog import SceneDialog
 from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.panels.volume_slices import VolumeSlices
 from geofit.gui.translate import translated
@@ -36,11 +35,13 @@ MICRO = 1e6
 UNSTATED = -1e12
 
 
-class RockVolumeDialog(TaskDialog):
+class RockVolumeDialog(SceneDialog):
     """Opens a volume, asks which values are pore and how large a voxel is, and shows network and surface.
 
     ``volume`` and ``view`` hold what was opened and made last.
     """
+
+    scene: PoreScene
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -96,16 +97,6 @@ class RockVolumeDialog(TaskDialog):
         self.go.setEnabled(ready and not self.running)
         for widget in (self.colour, self.network, self.surface):
             widget.setEnabled(self.view is not None)
-
-    def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
-        """Stop what runs, and let go of the 3D view."""
-        self.scene.close()
-        super().closeEvent(event)
-
-    def done(self, result: int) -> None:
-        """Let go of the 3D view, however the dialog is left."""
-        self.scene.close()
-        super().done(result)
 
     def _lay_out(self) -> None:
         form = QFormLayout()

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QCloseEvent
 from PySide6.QtWidgets import (
     QCheckBox,
     QDoubleSpinBox,
@@ -22,8 +21,8 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.caves.adjust import AdjustedSurvey
+from geofit.gui.dialogs.scene_dialog import SceneDialog
 from geofit.gui.dialogs.survey_tables import figure_rows, issue_columns, loop_columns, stratum_columns, wall_columns
-from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.translate import user_language
 from geofit.gui.view3d.cave_scene import FILLED, MEASURED, STATES, CaveScene
@@ -34,7 +33,7 @@ from geofit.surfaces.protocol import Surface
 __all__ = ["SurveyDialog"]
 
 
-class SurveyDialog(TaskDialog):
+class SurveyDialog(SceneDialog):
     """Shows a survey; ``add_requested(run)`` asks for its body in the open site, ``written(files)`` names new files.
 
     Parameters
@@ -47,6 +46,7 @@ class SurveyDialog(TaskDialog):
     ``adjusted`` and ``run`` hold the survey and its body; None before.
     """
 
+    scene: CaveScene
     add_requested = Signal(object)
     written = Signal(object)
 
@@ -113,16 +113,6 @@ class SurveyDialog(TaskDialog):
         for button in (self.export, self.report):
             button.setEnabled(free and made)
         self.add.setEnabled(free and made and self._can_add())
-
-    def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
-        """Stop what runs, and let go of the 3D view."""
-        self.scene.close()
-        super().closeEvent(event)
-
-    def done(self, result: int) -> None:
-        """Let go of the 3D view, however the dialog is left."""
-        self.scene.close()
-        super().done(result)
 
     def _lay_out(self) -> None:
         top = QHBoxLayout()
