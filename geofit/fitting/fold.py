@@ -135,31 +135,13 @@ def _aligned(lines: list[Floats]) -> list[Floats]:
 
 def _hinges(xyz: Floats, v: Floats) -> Floats:
     """Return v at the turning points of a line, in order: where it runs back by a share of its extent."""
+    from scipy.signal import find_peaks  # loads a third of scipy, for folds only
+
     plan = xyz[:, :2] - xyz[:, :2].mean(axis=0)
     along = plan @ np.linalg.svd(plan, full_matrices=False)[2][0]
     least = PROMINENT * float(np.ptp(along))
-    turns = np.sort(np.concatenate([_peaks(sign * along, least) for sign in (1, -1)]))
+    turns = np.sort(np.concatenate([find_peaks(sign * along, prominence=least)[0] for sign in (1, -1)]))
     return np.array([_summit(v[k - 1 : k + 2], along[k - 1 : k + 2]) for k in turns])
-
-
-def _peaks(x: Floats, least: float) -> NDArray[np.int64]:
-    """Return the local maxima that rise by ``least`` above the higher of their two bases; of a flat one the middle.
-
-    As ``scipy.signal.find_peaks(x, prominence=least)``, which loads a third of scipy.
-    """
-    starts = np.flatnonzero(np.diff(x, prepend=np.nan) != 0)
-    ends = np.append(starts[1:], len(x)) - 1
-    level = x[starts]
-    inner = np.flatnonzero((level[1:-1] > level[:-2]) & (level[1:-1] > level[2:])) + 1
-    found = []
-    for run in inner:
-        higher = np.flatnonzero(level > level[run])
-        k = int(np.searchsorted(higher, run))
-        left = level[higher[k - 1] + 1 if k else 0 : run]
-        right = level[run + 1 : higher[k] if k < len(higher) else None]
-        if level[run] - max(left.min(), right.min()) >= least:
-            found.append((starts[run] + ends[run]) // 2)
-    return np.array(found, np.int64)
 
 
 def _summit(v: Floats, along: Floats) -> float:
