@@ -316,8 +316,8 @@ def section(found: dict[str, dict[str, Figures]], count: int) -> str:
     row = found["frames"]["even"]
     slowest = max(max(r["all frame"], r["near frame"]) for r in found["frames"].values())
     load = max(r["load"] for r in found["frames"].values())
-    beside = f" on a machine with other load ({load:.0f})" if load > 1.5 * (os.cpu_count() or 1) else ""
-    say(f"""Frames/s were measured in this run{beside}. A frame takes at most {slowest:.0f} ms of CPU time: at least
+    loaded = f" on a machine under other load ({load:.0f})" if load > 1.5 * (os.cpu_count() or 1) else ""
+    say(f"""Frames/s were measured in this run{loaded}. A frame takes at most {slowest:.0f} ms of CPU time: at least
         {1e3 / slowest:.0f} frames/s where one processor is free.""")
     say(f"""To show {count:,} points takes {row["shown"]:.1f} s. Their coordinates are {row["input"]:.0f} MB; the scene
         adds {row["after"] - row["before"]:.0f} MB when they are shown, and {row["drawn"] - row["before"]:.0f} MB with

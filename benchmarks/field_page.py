@@ -113,7 +113,7 @@ _TRIES = (
         "no",
     ),
     (
-        "dense fields, 72 sets of 25 to 65 points of these truths beside 19 real lines: mean over range, noise, "
+        "dense fields on 72 sets of 25 to 65 points from these truths and on 19 real lines: mean over range, noise, "
         "direction and smoothness weighed by likelihood, instead of its peak",
         "GM to the better of thin plate and kriging 0.968 to 0.960 and 0.947 to 0.951; at most 1.02 on 67 % to 76 % "
         "and 74 % to 79 %; worst 1.50 to 1.51 and 1.37 the same",

@@ -100,7 +100,6 @@ def _open(source: Source, data: bytes) -> dict[str, list[tuple[int, list[str]]]]
         AttributeError,
         EOFError,
         LookupError,
-        NotImplementedError,
         OSError,
         RuntimeError,
         TypeError,

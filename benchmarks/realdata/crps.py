@@ -1,4 +1,4 @@
-"""How good the whole predicted distribution is at holes left out, beside that of a dense Gaussian process.
+"""The predicted distribution at holes left out, scored and compared with that of a dense Gaussian process.
 
 The continuous ranked probability score of a normal distribution, T. Gneiting & A. E. Raftery, J. Am. Stat. Assoc. 102,
 2007, 359-378, eq. 21; metres, the less the better.

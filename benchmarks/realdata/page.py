@@ -122,9 +122,9 @@ points stay), by the exact thin-plate spline, and by ordinary kriging, at the sa
 metres; steep horizons are measured across their best plane. "inside 90 %" is the share of the holes left out that lie
 within the 90 % band, "before" the share before the standard deviation was held to the errors that points left out
 show, "factor" by how much that changed it. "CRPS" is the mean continuous ranked probability score of the predicted
-distribution of a hole's contact, the less the better, beside that of a dense Gaussian process: the likelihood's choice
-of exponential, Matérn 3/2, Matérn 5/2 and Gaussian kernels, a plane as drift. Where another method is nearer, the same
-was done with the regional field alone, no point pulled and none interpolated, to show why.
+distribution of a hole's contact (lower is better), followed by that of a dense Gaussian process with a plane as drift
+and the likelihood's choice of exponential, Matérn 3/2, Matérn 5/2 and Gaussian kernels. Where another method is nearer,
+the same was done with the regional field alone, no point pulled and none interpolated, to show why.
 """
 
 _TRIALS = """Found by trying, for each line whose error is more than 2 % above the thin plate's: the same folds with the

@@ -73,7 +73,7 @@ def strata(body: PassageBody, horizons: Mapping[str, Horizon], *, spacing: float
     Raises
     ------
     SettingsError
-        If there is no horizon.
+        If no horizon is given.
     """
     if not horizons:
         raise SettingsError(

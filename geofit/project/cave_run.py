@@ -204,7 +204,7 @@ def cut_passages(run: CaveRun, horizons: Mapping[str, Horizon], progress: Progre
     Raises
     ------
     SettingsError
-        If there is no horizon.
+        If no horizon is given.
     """
     from geofit.caves.strata import strata
 

@@ -37,7 +37,7 @@ class HorizonForm(QWidget):
     """Builds rules; ``previewed(picks)`` after each change (None: nothing to show).
 
     ``built(name, rule, order)`` comes from Add, with all horizons in the order that they shall have, the highest first.
-    ``upright``: the codes are above the other fields, not beside them.
+    ``upright`` puts the codes above the other fields instead of to their left.
     """
 
     previewed = Signal(object)
