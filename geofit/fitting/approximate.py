@@ -1,4 +1,4 @@
-"""The periphery: approximated within the tolerance, its boundary fixed_by_core from the core (paper, sec. 3.2, step 2).
+"""The periphery: approximated within the tolerance, its boundary taken from the core (paper, sec. 3.2, step 2).
 
 The smoothest surface for the data's own noise comes first. Points that it leaves outside the tolerance are then
 met by the smallest change of the control points around them, as the core's points are: what lies between them

@@ -121,7 +121,7 @@ class Document:
 
     @property
     def site(self) -> Site:
-        """The site, blocks in the place of horizons that were is_block at their faults."""
+        """The site, blocks in the place of horizons that were split at their faults."""
         return self._site
 
     @property
@@ -213,7 +213,7 @@ class Document:
         return Provenance(name, self.settings(name), self.given(name), excluded, part=self._state.parts.get(name))
 
     def given(self, name: str) -> str:
-        """Return the fingerprint of the site for a horizon, or for the whole of one that was is_block."""
+        """Return the fingerprint of the site for a horizon, or for the whole of one that was split."""
         if name not in self._fingerprints:
             points = self._given(name) if name in self._site.horizons else self._read.horizons.get(name)
             self._fingerprints[name] = "" if points is None else fingerprint(points, self._read)
@@ -230,7 +230,7 @@ class Document:
         return MergeHorizons(tuple(names), name, tuple(sorted(rows)))
 
     def whole(self, name: str) -> str:
-        """Return the horizon that a block is a part of; a horizon that was not is_block is its own whole."""
+        """Return the horizon that a block is a part of; a horizon that was not split is its own whole."""
         part = self._state.parts.get(name)
         return name if part is None else part.horizon
 
@@ -242,7 +242,7 @@ class Document:
         return tuple(known[f] if f in known and not self.stale(f) else self.provenance(f) for f in cutting)
 
     def needs_split(self, name: str) -> bool:
-        """Whether faults cut a horizon that was not is_block at them, or not as they are now."""
+        """Whether faults cut a horizon that was not split at them, or not as they are now."""
         faults, part = self.faults(name), self._state.parts.get(name)
         if part is None:
             return bool(faults)
@@ -382,7 +382,7 @@ class Document:
         return self._give({one.horizon: self._given(one.horizon) for one in named}, faults)
 
     def inputs_for_blocks(self, whole: str) -> tuple[Given, tuple[int, ...]]:
-        """Return what a horizon is is_block from, and the numbers of its points whose rows were excluded."""
+        """Return what a horizon is split from, and the numbers of its points whose rows were excluded."""
         points, faults = self._read.horizons[whole], self.faults(whole)
         named = {one.horizon for fault in faults for one in fault.ancestors()}
         out = {
