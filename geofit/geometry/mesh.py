@@ -26,8 +26,8 @@ Tolerance = float | Callable[[Floats, Floats], Floats]
 
 #: Corners and edges of patches nearer than this (metres) are one, as in the sewn shell.
 WELD = 1e-6
-#: No span is cut into more pieces than this.
-FINEST = 400
+#: No span is cut into more pieces than this: of a surface bent in both directions they are too many triangles.
+FINEST = 4_000
 #: Triangles of one surface.
 MOST = 20_000_000
 
