@@ -143,11 +143,18 @@ def regularized_correction(matrix: csr_array, misfit: Floats, free: NDArray[np.b
     contradict each other by is left, and so is what only the fringes of the free control points could correct.
     Parameters as there.
     """
-    acting = csr_array(matrix * free.astype(float))
-    gram = (acting @ acting.T).tocsc()
-    whole = float(matrix.power(2).sum(axis=1).max())
-    gram.setdiag(gram.diagonal() + DAMPING * whole)
-    return np.asarray(acting.T @ splu(gram).solve(misfit))
+    columns = np.flatnonzero(free & (np.bincount(matrix.indices, minlength=matrix.shape[1]) > 0))
+    change = np.zeros((matrix.shape[1], *misfit.shape[1:]))
+    if not len(columns):
+        return change
+    acting = csr_array(matrix[:, columns])
+    # (A' A + d)^-1 A' = A' (A A' + d)^-1: of points and control points, the fewer are the unknowns.
+    many = len(misfit) > len(columns)
+    gram = (acting.T @ acting if many else acting @ acting.T).tocsc()
+    gram.setdiag(gram.diagonal() + DAMPING * float(matrix.power(2).sum(axis=1).max()))
+    solve = splu(gram).solve
+    change[columns] = solve(acting.T @ misfit) if many else acting.T @ solve(misfit)
+    return change
 
 
 def _unmet(what: Message) -> Message:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import tracemalloc
 from itertools import pairwise
 
 import numpy as np
@@ -10,7 +11,14 @@ from truth import EASTING, NORTHING, paper_arrangement
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.errors import FitError
 from geofit.fitting.knots import neighbour_pairs
-from geofit.fitting.skin import minimum_norm_correction, refine_knots, regularized_correction, ruled, section_lines
+from geofit.fitting.skin import (
+    DAMPING,
+    minimum_norm_correction,
+    refine_knots,
+    regularized_correction,
+    ruled,
+    section_lines,
+)
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
@@ -86,6 +94,34 @@ def test_a_damped_change_takes_most_of_a_misfit_and_leaves_contradictions():
     twice = space.matrix(np.array([[3.0, 2], [3.0001, 2]]))
     change = regularized_correction(twice, np.array([-1.0, 1.0]), free)
     assert np.abs(change).max() < 0.1
+
+
+@pytest.mark.parametrize("count", [20, 2000])
+def test_few_points_and_many_are_damped_alike(count):
+    space, rng = space_of(), np.random.default_rng(3)
+    plane = rng.uniform((0, 0), (6, 5), (count, 2))
+    misfit, free = rng.normal(size=(len(plane), 2)), rng.uniform(size=space.size) < 0.8
+    matrix = space.matrix(plane)
+    dense = matrix.toarray() * free
+    damping = DAMPING * (matrix.toarray() ** 2).sum(axis=1).max()
+    wanted = dense.T @ np.linalg.solve(dense @ dense.T + damping * np.eye(len(plane)), misfit)
+    np.testing.assert_allclose(regularized_correction(matrix, misfit, free), wanted, atol=1e-8)
+
+
+def test_nothing_is_corrected_where_no_control_point_is_free():
+    space = space_of()
+    plane, misfit = spread(5)
+    assert not regularized_correction(space.matrix(plane), misfit, np.zeros(space.size, bool)).any()
+
+
+def test_memory_does_not_grow_with_the_square_of_points_in_a_crowd():
+    space, rng = space_of(), np.random.default_rng(4)
+    matrix = space.matrix(rng.uniform(2, 3, (20_000, 2)))
+    tracemalloc.start()
+    regularized_correction(matrix, rng.normal(size=20_000), np.ones(space.size, bool))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 50e6
 
 
 def change_between(breaks_u, breaks_v, plane, misfit):
