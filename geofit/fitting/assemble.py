@@ -13,7 +13,14 @@ from geofit.splines import bspline
 from geofit.splines.patch import Patch
 from geofit.splines.tensor import TensorSpace
 
-__all__ = ["Division", "NetPart", "divide", "multiply_knots", "patches_of", "with_knots"]
+__all__ = [
+    "Division",
+    "NetPart",
+    "carried",
+    "divide",
+    "multiply_knots",
+    "patches_of",
+]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -22,17 +29,24 @@ Rectangle = tuple[float, float, float, float]
 def multiply_knots(
     space: TensorSpace, coefficients: Floats, at_u: dict[float, int], at_v: dict[float, int]
 ) -> tuple[TensorSpace, Floats]:
-    """Raise the multiplicity of knots without changing the surface."""
-    return with_knots(space, coefficients, _raised(space.knots_u, at_u), _raised(space.knots_v, at_v))
+    """Raise the multiplicity of knots without changing the surface (The NURBS Book, A5.1)."""
+    finer = TensorSpace(_raised(space.knots_u, at_u), _raised(space.knots_v, at_v), space.degree)
+    tu = bspline.insertion_matrix(space.knots_u, finer.knots_u, space.degree)
+    tv = bspline.insertion_matrix(space.knots_v, finer.knots_v, space.degree)
+    return finer, _refined(coefficients, tu, tv)
 
 
-def with_knots(
-    space: TensorSpace, coefficients: Floats, knots_u: Floats, knots_v: Floats
-) -> tuple[TensorSpace, Floats]:
-    """Insert knots, those of the space among the given ones, without changing the surface (The NURBS Book, A5.1)."""
-    tu = bspline.insertion_matrix(space.knots_u, knots_u, space.degree)
-    tv = bspline.insertion_matrix(space.knots_v, knots_v, space.degree)
-    return TensorSpace(knots_u, knots_v, space.degree), _refined(coefficients, tu, tv)
+def carried(space: TensorSpace, coefficients: Floats, knots_u: Floats, knots_v: Floats) -> tuple[TensorSpace, Floats]:
+    """Return the surface on other knots: interpolated at their Greville abscissae (The NURBS Book, sec. 9.2).
+
+    Knots that contain the surface's own leave it as it is.
+    """
+    moves: list[Floats] = []
+    for knots, own in ((knots_u, space.knots_u), (knots_v, space.knots_v)):
+        at = bspline.greville(knots, space.degree)
+        matrices = (bspline.collocation(each, space.degree, at) for each in (knots, own))
+        moves.append(np.asarray(np.linalg.solve(*matrices), float))
+    return TensorSpace(knots_u, knots_v, space.degree), _refined(coefficients, moves[0], moves[1])
 
 
 def _refined(coefficients: Floats, tu: Floats, tv: Floats) -> Floats:

@@ -15,23 +15,14 @@ from geofit.data.errors import ExactnessError
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
+from geofit.fitting.active_points import Data, degree_for, gather_points
 from geofit.fitting.approximate import fixed_by_core
-from geofit.fitting.assemble import multiply_knots, with_knots
+from geofit.fitting.assemble import carried, multiply_knots
 from geofit.fitting.field import FieldChoice, Smoothed
 from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes, some_breaks
-from geofit.fitting.net import (
-    Data,
-    Net,
-    Periphery,
-    cap_for,
-    choose_field,
-    degree_for,
-    gather_points,
-    in_patches,
-    longest_span,
-    smoothed,
-)
+from geofit.fitting.net import Net, Periphery, cap_for, in_patches, smoothed
 from geofit.fitting.parametrize import Parametrization
+from geofit.fitting.resolution import choose_field, longest_span
 from geofit.fitting.skin import Lines, lofted, minimum_norm_correction, refine_knots, ruled, section_lines
 from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
@@ -52,8 +43,9 @@ LONGEST = 0.45
 LONGEST_IN_GROUPS = 0.35
 #: Slope that two neighbours may ask for beyond the field's own, where not all points of a core can be met.
 CLIFF = 0.5
-#: Span of the field's space where the knots are finer for the core's points alone, in units.
-FIELD_SPAN = 0.3
+#: Span of the field's space where the knots are finer for the core's points alone, in units. Spans longer than the
+#: other were chosen by the likelihood, and are kept: the field there is smoother than on finer ones.
+FIELD_SPAN, SIMPLE = 0.3, 0.55
 #: Spans between neighbours of one section, and of neighbouring sections, as a share of their distance.
 ALONG, ACROSS = 1.8, 1.0
 #: Spans beside a section line, as a share of the distance to the next, and how many there are on each side.
@@ -123,7 +115,18 @@ def fit_with_core(
     while True:
         try:
             base, space, coefficients, plane, rule = _through_points(
-                data, core, inside, field, longest, lines, linear, parametrization.parametric, most, closer, settings
+                data,
+                core,
+                inside,
+                field,
+                coarse,
+                longest,
+                lines,
+                linear,
+                parametrization.parametric,
+                most,
+                closer,
+                settings,
             )
             break
         except ExactnessError:
@@ -176,6 +179,7 @@ def _through_points(
     core: Rectangle,
     inside: NDArray[np.bool_],
     field: FieldChoice,
+    coarse: TensorSpace,
     longest: float,
     lines: Lines,
     linear: bool,
@@ -187,7 +191,7 @@ def _through_points(
     """Lay knots within a cap, fit the field on them, and let it pass through the core's points.
 
     Between neighbours along the sections the spans are ``closer`` times as long as usual, outside the core no longer
-    than ``longest``, in units.
+    than ``longest``, in units. ``coarse`` is the space on which the field was chosen.
 
     Returns the field's space, the surface's, its coefficients, the plane under them, and the section lines of a core
     that is linear across them.
@@ -204,13 +208,16 @@ def _through_points(
     plane = data.plane[chosen]
     pairs = neighbour_pairs(plane)
     breaks, counted = _breaks(plane, pairs, data.area, degree, core, longest, lines, most, closer)
-    coarser = [bspline.clamped_knots(some_breaks(along, min(FIELD_SPAN, longest)), degree) for along in breaks]
-    base = TensorSpace(coarser[0], coarser[1], degree)
+    if longest_span(coarse) > SIMPLE:
+        base = coarse
+    else:
+        some = [bspline.clamped_knots(some_breaks(along, min(FIELD_SPAN, longest)), degree) for along in breaks]
+        base = TensorSpace(some[0], some[1], degree)
     regional = smoothed(data, base, field)
     misfit = data.value[chosen] - base.matrix(plane) @ regional.coefficients
     breaks = refine_knots(*breaks, plane, pairs, misfit, degree, counted, max(settings.max_iterations, 1))
     knots = [bspline.clamped_knots(along, degree) for along in breaks]
-    fine, start = with_knots(base, regional.coefficients, knots[0], knots[1])
+    fine, start = carried(base, regional.coefficients, knots[0], knots[1])
     if linear:
         within = lines.u[(lines.u > core[0]) & (lines.u < core[1])]
         rule = _thinned(within, (core[0], core[1]), NARROW * (core[1] - core[0]) / len(lines.u))

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from geofit.data.accuracy import Conflict, Partition
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
+from geofit.fitting.active_points import gather_points
 from geofit.fitting.assemble import patches_of
 from geofit.fitting.core import fit_with_core
-from geofit.fitting.net import Net, approximate_all, gather_points
+from geofit.fitting.net import Net, approximate_all
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split

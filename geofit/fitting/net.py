@@ -1,23 +1,23 @@
 """The control net: from points on a parametrization to the coefficients of one tensor-product surface.
 
-Here stand what every fit needs (the points in units, the spaces, the caps) and the approximation: all points, or
-those beside a core, whose net :mod:`geofit.fitting.core` makes.
+Here stand what every fit needs (the net, the caps) and the approximation: all points, or those beside a core, whose
+net :mod:`geofit.fitting.core` makes.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
-from geofit.data.long_arrays import LongArray, Rows, blocks, everywhere, inverse_squares, without
+from geofit.data.long_arrays import Rows, blocks, inverse_squares
 from geofit.data.messages import Message, message
-from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
+from geofit.fitting.active_points import Data
 from geofit.fitting.approximate import approximate, fixed_by_core, solved_beside
 from geofit.fitting.assemble import multiply_knots
 from geofit.fitting.density import CLOUD
@@ -25,47 +25,29 @@ from geofit.fitting.field import (
     ENOUGH,
     FieldChoice,
     Smoothed,
-    choose_covariance,
-    plane_trend,
     precision_band,
     relative_noise,
     smooth,
 )
 from geofit.fitting.likelihood import plane_coefficients
-from geofit.fitting.parametrize import Parametrization
-from geofit.fitting.slopes import Slopes
-from geofit.fitting.split import Split
+from geofit.fitting.resolution import choose_field
 from geofit.geometry.cells import tabulate
-from geofit.splines import bspline
 from geofit.splines.patch import Patch
 from geofit.splines.tensor import TensorSpace
 
 __all__ = [
-    "Data",
     "Net",
     "Periphery",
     "approximate_all",
     "cap_for",
-    "choose_field",
-    "degree_for",
-    "even_space",
-    "gather_points",
     "in_patches",
-    "longest_span",
+    "smoothed",
 ]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
 Stage = Callable[[str, float], None]
 
-#: Shortest spans of the first space on which the field is chosen, in units of the spacing, and of the last: holes in
-#: groups resolve what points of an even spacing do not. Control points of the level that the search begins on, of the
-#: first that is kept, and at most.
-EVEN, CLOSE, SKETCH, FIRST_LEVEL, LAST_LEVEL = 0.5, 0.25, 500, 1_500, 25_000
-#: Points that the search begins with, at least; of twice as many every other one serves.
-SKETCHED = 10_000
-#: A finer level must raise the restricted likelihood by this much, -2 log of it.
-GAIN = 10.0
 #: Span around a point that is met within its tolerance, in units: what lies between stays the field's.
 NARROW = 0.15
 #: Shortest span that is still halved for a point outside its tolerance.
@@ -104,86 +86,6 @@ class Net:
     notes: tuple[Message, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Data:
-    """The points that the fit honours, and measured slopes, in units, about the points' trend.
-
-    The places of a cloud are made when read.
-    """
-
-    plane: Rows
-    value: Rows
-    accuracy: Floats
-    area: Rectangle
-    unit: float
-    trend: Floats
-    slopes: Slopes | None = None
-
-    def whole(self) -> Data:
-        """Return the same points, all places held."""
-        return replace(self, plane=np.asarray(self.plane[:]), value=np.asarray(self.value[:]))
-
-    def over_trend(self, space: TensorSpace) -> Floats:
-        """Return the trend's coefficients on a space."""
-        return np.asarray(plane_coefficients(space) @ self.trend)
-
-
-def gather_points(
-    points: PointSet,
-    parametrization: Parametrization,
-    kept: NDArray[np.bool_],
-    split: Split | None,
-    slopes: Slopes | None = None,
-) -> Data:
-    """Return the points that the fit honours, in units of the spacing of the sparse ones, about their trend."""
-    area = parametrization.area
-    size, n = (area[1] - area[0]) * (area[3] - area[2]), int(kept.sum())
-    sparse = int((~split.inside & kept).sum()) if split is not None else 0
-    if split is not None and split.core is not None and sparse >= 10:
-        c = split.core
-        size, n = size - (c[1] - c[0]) * (c[3] - c[2]), sparse
-    unit = float(np.sqrt(size / n))
-    plane, value = _active_rows(parametrization, kept, unit)
-    trend = plane_trend(plane, value, everywhere(1.0, len(plane)))
-    scaled = (area[0] / unit, area[1] / unit, area[2] / unit, area[3] / unit)
-    about = np.empty(value.shape)
-    for rest, heights, places in blocks(about, value, plane):
-        np.subtract(heights, trend[0] + places @ trend[1:], out=rest)
-    known = np.isfinite(points.accuracy).any()
-    accuracy = points.accuracy[kept] if known else everywhere(np.nan, len(plane))
-    turned = None if slopes is None else slopes.in_units(unit, trend)
-    return Data(plane, about, accuracy, scaled, unit, trend, turned)
-
-
-def _active_rows(parametrization: Parametrization, kept: NDArray[np.bool_], unit: float) -> tuple[Rows, Rows]:
-    """Return places in units and values of the points that are kept; those of a cloud are not copied."""
-    if len(kept) <= CLOUD:
-        return parametrization.plane[kept] / unit, parametrization.values[kept]
-    gone = np.flatnonzero(~kept)
-    places = without(parametrization.plane, gone)
-    plane = LongArray((len(places), 2), lambda start, stop: places[start:stop] / unit)
-    return plane, without(parametrization.values, gone)
-
-
-def degree_for(n: int) -> int:
-    """Fewer than 16 points cannot hold a bicubic patch."""
-    return 3 if n >= 16 else 2 if n >= 6 else 1
-
-
-def even_space(area: Rectangle, span: float, degree: int, most: int) -> TensorSpace:
-    """Return a space of even spans no longer than ``span``, or as long as the cap of control points asks for."""
-    while True:
-        counts = [max(int(np.ceil((area[k + 1] - area[k]) / span - 1e-9)), 1) for k in (0, 2)]
-        if (counts[0] + degree) * (counts[1] + degree) <= most or max(counts) == 1:
-            break
-        span *= 1.02
-    return TensorSpace(
-        bspline.clamped_knots(np.linspace(area[0], area[1], counts[0] + 1), degree),
-        bspline.clamped_knots(np.linspace(area[2], area[3], counts[1] + 1), degree),
-        degree,
-    )
-
-
 def cap_for(settings: FitSettings, n: int, a_point: int = A_POINT) -> int:
     """Return the cap of the number of control points."""
     return settings.max_control_points or int(np.clip(a_point * n, FEWEST, MOST))
@@ -198,52 +100,6 @@ def in_patches(shape: tuple[int, int], core: Rectangle | None, space: TensorSpac
         inner = [x for x in edges if knots[0] < x < knots[-1]]
         rows.append(count + sum(space.degree + 1 - int((knots == x).sum()) for x in inner))
     return rows[0] * rows[1]
-
-
-def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldChoice, TensorSpace]:
-    """Choose the regional field (:func:`geofit.fitting.field.choose_covariance`) and the even space that resolves it.
-
-    Smoothness and direction are found on few control points, where a value of the likelihood costs little, range and
-    noise on the first level. Its spans are shortened while the likelihood gains by it, down to those that points in
-    groups resolve.
-    """
-    degree, noise = degree_for(len(data.plane)), relative_noise(data.accuracy)
-    given = None if settings.smoothing == "auto" else float(settings.smoothing)
-    limit = min(most, LAST_LEVEL)
-    count = min(FIRST_LEVEL, limit)
-    space, sketch = (even_space(data.area, EVEN, degree, most) for most in (count, SKETCH))
-    known: list[FieldChoice] = []
-    if sketch.size < space.size:
-        some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
-        found = choose_covariance(sketch, data.plane[some], data.value[some], noise[some], given, (), data.trend)
-        known = [one for one, _ in found]
-    field, value = choose_covariance(space, data.plane, data.value, noise, given, known, data.trend)[0]
-    for finer in _finer(data.area, degree, limit):
-        if finer.size < 1.3 * space.size:
-            continue
-        better, reached = choose_covariance(finer, data.plane, data.value, noise, given, [field], data.trend)[0]
-        if reached > value - GAIN:
-            break
-        space, field, value = finer, better, reached
-    if data.slopes is not None and len(data.slopes):
-        field = choose_covariance(
-            space, data.plane, data.value, noise, given, [field], data.trend, data.slopes, field.noise
-        )[0][0]
-    return field, space
-
-
-def _finer(area: Rectangle, degree: int, limit: int) -> Iterator[TensorSpace]:
-    """Yield spaces of ever shorter spans: down to those of evenly spaced points, then that of points in groups."""
-    count = FIRST_LEVEL
-    while 2 * count <= limit:
-        count *= 2
-        yield even_space(area, EVEN, degree, count)
-    yield even_space(area, CLOSE, degree, limit)
-
-
-def longest_span(space: TensorSpace) -> float:
-    """Return the longest span of a space."""
-    return max(float(np.diff(knots).max()) for knots in (space.knots_u, space.knots_v))
 
 
 def smoothed(data: Data, space: TensorSpace, field: FieldChoice) -> Smoothed:

@@ -19,9 +19,10 @@ from scipy.sparse import csr_array
 
 from geofit.data.errors import FitError
 from geofit.data.messages import message
+from geofit.fitting.active_points import gather_points
 from geofit.fitting.field import FieldChoice, planes_of, relative_noise, slope_of, widened_space
 from geofit.fitting.model import Model
-from geofit.fitting.net import even_space, gather_points
+from geofit.fitting.resolution import even_space
 from geofit.splines.blocks import BlockFactor, InverseBlocks
 from geofit.splines.matern import MaternPrecision
 from geofit.splines.tensor import TensorSpace

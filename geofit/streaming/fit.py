@@ -24,10 +24,12 @@ from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
+from geofit.fitting.active_points import Data
 from geofit.fitting.assemble import patches_of
 from geofit.fitting.field import FieldChoice, plane_trend
-from geofit.fitting.net import Data, cap_for, choose_field, smoothed
+from geofit.fitting.net import cap_for, smoothed
 from geofit.fitting.parametrize import STEEP, direction_of, plan_box
+from geofit.fitting.resolution import choose_field
 from geofit.geometry.frame import Frame, map_frame, plane_axes
 from geofit.streaming.coincident import coincident
 from geofit.surfaces.patch_surface import PatchSurface
@@ -228,7 +230,7 @@ def _frame(xyz: Rows, low: Floats, high: Floats, settings: FitSettings, boundary
 
 
 def _gather(local: LongArray, frame: Frame, boundary: Floats | None) -> Data:
-    """Return the points in units about their trend, as :func:`geofit.fitting.net.gather_points` does."""
+    """Return the points in units about their trend, as :func:`geofit.fitting.active_points.gather_points` does."""
     extents = [np.min([part.min(axis=0) for (part,) in blocks(local)], axis=0)[:2]]
     extents.append(np.max([part.max(axis=0) for (part,) in blocks(local)], axis=0)[:2])
     if boundary is not None and frame.kind == "map":

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geofit.fitting.assemble import multiply_knots, patches_of
+from geofit.fitting.assemble import carried, multiply_knots, patches_of
 from geofit.geometry.frame import Frame
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
@@ -163,3 +163,23 @@ def test_raising_knots_keeps_the_surface():
     same, unchanged = multiply_knots(space, coefficients, {3.0: 1}, {})
     np.testing.assert_array_equal(same.knots_u, space.knots_u)
     np.testing.assert_array_equal(unchanged, coefficients)
+
+
+@pytest.mark.parametrize("columns", [None, 3])
+@pytest.mark.parametrize("degree", [1, 2, 3])
+def test_knots_that_contain_the_surface_s_own_carry_it_unchanged(columns, degree):
+    space, coefficients = case(degree, columns)
+    knots = [np.sort(np.append(each, [0.4, 5.5])) for each in (space.knots_u, space.knots_v)]
+    fine, net = carried(space, coefficients, *knots)
+    at = np.random.default_rng(3).uniform(0, 8, (300, 2))
+    np.testing.assert_allclose(fine.matrix(at) @ net, space.matrix(at) @ coefficients, atol=1e-11)
+
+
+def test_other_knots_carry_a_surface_the_better_the_finer_they_are():
+    space, coefficients = case()
+    at, off = np.random.default_rng(3).uniform(0, 8, (2000, 2)), []
+    for count in (40, 80):
+        knots = bspline.clamped_knots(np.linspace(0, 8, count + 1) ** 1.02 / 8**0.02, 3)
+        fine, net = carried(space, coefficients, knots, knots)
+        off.append(float(np.abs(fine.matrix(at) @ net - space.matrix(at) @ coefficients).max()))
+    assert off[1] < 0.2 * off[0]

@@ -16,7 +16,7 @@ from geofit.fitting.field import (
     smooth,
     widened_space,
 )
-from geofit.fitting.net import EVEN, longest_span
+from geofit.fitting.resolution import EVEN, longest_span
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
@@ -132,7 +132,7 @@ def test_holes_in_groups_on_a_rugged_surface_take_a_finer_field(seed, monkeypatc
     """What holes near to each other tell of short waves is not noise: the field between them is nearer to the truth."""
     points, at = groups_of_holes(seed, rugged(seed))
     fine = field_alone(points)
-    monkeypatch.setattr("geofit.fitting.net.CLOSE", EVEN)
+    monkeypatch.setattr("geofit.fitting.resolution.CLOSE", EVEN)
     even = field_alone(points)
     assert longest_span(fine.model.net.base) < 0.3 < longest_span(even.model.net.base)
     assert fine.diagnostics["noise"] < 0.85 * even.diagnostics["noise"]
@@ -144,6 +144,41 @@ def test_holes_in_groups_on_a_rugged_surface_take_a_finer_field(seed, monkeypatc
 def test_holes_in_groups_on_a_smooth_surface_take_no_more_control_points(seed):
     points, _ = groups_of_holes(seed, hills(seed))
     assert longest_span(field_alone(points).model.net.base) > 0.4
+
+
+def noisy_points(seed, height, noise=0.3, n=1000):
+    rng = np.random.default_rng(seed)
+    xy = rng.uniform(0, SIZE, (n, 2)) + np.array([EASTING, NORTHING])
+    at = rng.uniform(0.05 * SIZE, 0.95 * SIZE, (3000, 2)) + np.array([EASTING, NORTHING])
+    return PointSet(np.column_stack([xy, height(*xy.T) + rng.normal(0, noise, n)])), at
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_surface_smoother_than_any_field_takes_longer_spans(seed, monkeypatch):
+    points, at = noisy_points(seed, hills(seed), n=3000)
+    simple = field_alone(points)
+    monkeypatch.setattr("geofit.fitting.resolution.COARSEST", 10**9)
+    even = field_alone(points)
+    assert longest_span(simple.model.net.base) > 1.2 * longest_span(even.model.net.base)
+    truth = hills(seed)(*at.T)
+    assert rms(simple.elevation(*at.T) - truth) < 0.95 * rms(even.elevation(*at.T) - truth)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_rugged_surface_keeps_the_spans_that_its_relief_needs(seed):
+    points, _ = noisy_points(seed, rugged(seed))
+    assert longest_span(field_alone(points).model.net.base) < 1
+
+
+def test_accurate_points_keep_the_spans_that_noise_alone_does_not_explain(monkeypatch):
+    """On longer spans the noise would be several times as large: they cut the truth, which the points resolve."""
+    points, at = noisy_points(1, hills(1), noise=0.01)
+    found = field_alone(points)
+    assert found.diagnostics["noise"] < 0.02
+    monkeypatch.setattr("geofit.fitting.resolution.LOUDER", np.inf)
+    cut = field_alone(points)
+    truth = hills(1)(*at.T)
+    assert rms(found.elevation(*at.T) - truth) < rms(cut.elevation(*at.T) - truth)
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 0.6, 2.0])

@@ -1,0 +1,89 @@
+"""The active points of a fit: in units of the spacing of the sparse ones, about their trend."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.long_arrays import LongArray, Rows, blocks, everywhere, without
+from geofit.data.points import PointSet
+from geofit.fitting.density import CLOUD
+from geofit.fitting.field import plane_trend
+from geofit.fitting.likelihood import plane_coefficients
+from geofit.fitting.parametrize import Parametrization
+from geofit.fitting.slopes import Slopes
+from geofit.fitting.split import Split
+from geofit.splines.tensor import TensorSpace
+
+__all__ = ["Data", "degree_for", "gather_points"]
+
+Floats = NDArray[np.float64]
+Rectangle = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Data:
+    """The points that the fit honours, and measured slopes, in units, about the points' trend.
+
+    The places of a cloud are made when read.
+    """
+
+    plane: Rows
+    value: Rows
+    accuracy: Floats
+    area: Rectangle
+    unit: float
+    trend: Floats
+    slopes: Slopes | None = None
+
+    def whole(self) -> Data:
+        """Return the same points, all places held."""
+        return replace(self, plane=np.asarray(self.plane[:]), value=np.asarray(self.value[:]))
+
+    def over_trend(self, space: TensorSpace) -> Floats:
+        """Return the trend's coefficients on a space."""
+        return np.asarray(plane_coefficients(space) @ self.trend)
+
+
+def gather_points(
+    points: PointSet,
+    parametrization: Parametrization,
+    kept: NDArray[np.bool_],
+    split: Split | None,
+    slopes: Slopes | None = None,
+) -> Data:
+    """Return the points that the fit honours, in units of the spacing of the sparse ones, about their trend."""
+    area = parametrization.area
+    size, n = (area[1] - area[0]) * (area[3] - area[2]), int(kept.sum())
+    sparse = int((~split.inside & kept).sum()) if split is not None else 0
+    if split is not None and split.core is not None and sparse >= 10:
+        c = split.core
+        size, n = size - (c[1] - c[0]) * (c[3] - c[2]), sparse
+    unit = float(np.sqrt(size / n))
+    plane, value = _active_rows(parametrization, kept, unit)
+    trend = plane_trend(plane, value, everywhere(1.0, len(plane)))
+    scaled = (area[0] / unit, area[1] / unit, area[2] / unit, area[3] / unit)
+    about = np.empty(value.shape)
+    for rest, heights, places in blocks(about, value, plane):
+        np.subtract(heights, trend[0] + places @ trend[1:], out=rest)
+    known = np.isfinite(points.accuracy).any()
+    accuracy = points.accuracy[kept] if known else everywhere(np.nan, len(plane))
+    turned = None if slopes is None else slopes.in_units(unit, trend)
+    return Data(plane, about, accuracy, scaled, unit, trend, turned)
+
+
+def _active_rows(parametrization: Parametrization, kept: NDArray[np.bool_], unit: float) -> tuple[Rows, Rows]:
+    """Return places in units and values of the points that are kept; those of a cloud are not copied."""
+    if len(kept) <= CLOUD:
+        return parametrization.plane[kept] / unit, parametrization.values[kept]
+    gone = np.flatnonzero(~kept)
+    places = without(parametrization.plane, gone)
+    plane = LongArray((len(places), 2), lambda start, stop: places[start:stop] / unit)
+    return plane, without(parametrization.values, gone)
+
+
+def degree_for(n: int) -> int:
+    """Fewer than 16 points cannot hold a bicubic patch."""
+    return 3 if n >= 16 else 2 if n >= 6 else 1

@@ -1,0 +1,134 @@
+"""How fine the field's space is: the even spans that the restricted likelihood asks for, short or long.
+
+A field of Matérn smoothness is rougher than many truths. On spans as long as the truth allows, the space itself is
+smooth: there the likelihood is greater, and so is the accuracy away from the data.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from geofit.data.settings import FitSettings
+from geofit.fitting.active_points import Data, degree_for
+from geofit.fitting.field import FieldChoice, choose_covariance, relative_noise
+from geofit.splines import bspline
+from geofit.splines.tensor import TensorSpace
+
+__all__ = ["EVEN", "choose_field", "even_space", "longest_span"]
+
+Rectangle = tuple[float, float, float, float]
+
+#: Shortest spans of the first space on which the field is chosen, in units of the spacing, and of the last: holes in
+#: groups resolve what points of an even spacing do not. Control points of the level that the search begins on, of the
+#: first that is kept, and at most.
+EVEN, CLOSE, SKETCH, FIRST_LEVEL, LAST_LEVEL = 0.5, 0.25, 500, 1_500, 25_000
+#: Points that the search begins with, at least; of twice as many every other one serves.
+SKETCHED = 10_000
+#: Another level must raise the restricted likelihood by this much, -2 log of it.
+GAIN = 10.0
+#: Control points of a coarser level, as a share of those of the last, and the least of any.
+COARSER, COARSEST = 0.75, 75
+#: How many times the noise of the level before a coarser one may find.
+LOUDER = 1.25
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
+    """The best field on a space, and -2 log of its restricted likelihood."""
+
+    space: TensorSpace
+    field: FieldChoice
+    value: float
+
+
+def even_space(area: Rectangle, span: float, degree: int, most: int) -> TensorSpace:
+    """Return a space of even spans no longer than ``span``, or as long as the cap of control points asks for."""
+    while True:
+        counts = [max(int(np.ceil((area[k + 1] - area[k]) / span - 1e-9)), 1) for k in (0, 2)]
+        if (counts[0] + degree) * (counts[1] + degree) <= most or max(counts) == 1:
+            break
+        span *= 1.02
+    return TensorSpace(
+        bspline.clamped_knots(np.linspace(area[0], area[1], counts[0] + 1), degree),
+        bspline.clamped_knots(np.linspace(area[2], area[3], counts[1] + 1), degree),
+        degree,
+    )
+
+
+def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldChoice, TensorSpace]:
+    """Choose the regional field (:func:`geofit.fitting.field.choose_covariance`) and the even space that resolves it.
+
+    Smoothness and direction are found on few control points, where a value of the likelihood costs little, range and
+    noise on the first level. Its spans are shortened while the likelihood gains by it, down to those that points in
+    groups resolve, and then lengthened while it gains by that.
+    """
+    degree, noise = degree_for(len(data.plane)), relative_noise(data.accuracy)
+    given = None if settings.smoothing == "auto" else float(settings.smoothing)
+    limit = min(most, LAST_LEVEL)
+    space, sketch = (even_space(data.area, EVEN, degree, size) for size in (min(FIRST_LEVEL, limit), SKETCH))
+
+    def on(space: TensorSpace, known: Sequence[FieldChoice], rival: float = math.inf) -> Level:
+        field, value = choose_covariance(space, data.plane, data.value, noise, given, known, data.trend, rival=rival)[0]
+        return Level(space, field, value)
+
+    known: list[FieldChoice] = []
+    if sketch.size < space.size:
+        some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
+        found = choose_covariance(sketch, data.plane[some], data.value[some], noise[some], given, (), data.trend)
+        known = [one for one, _ in found]
+    best = on(space, known)
+    for finer in _finer(data.area, degree, limit):
+        if finer.size < 1.3 * best.space.size:
+            continue
+        level = on(finer, [best.field], best.value)
+        if level.value > best.value - GAIN:
+            break
+        best = level
+    space, field = _lengthened(best, _coarser(data.area, degree, best.space.size), on)
+    if data.slopes is not None and len(data.slopes):
+        field = choose_covariance(
+            space, data.plane, data.value, noise, given, [field], data.trend, data.slopes, field.noise
+        )[0][0]
+    return field, space
+
+
+def _lengthened(
+    best: Level, coarser: Iterable[TensorSpace], on: Callable[[TensorSpace, Sequence[FieldChoice]], Level]
+) -> tuple[TensorSpace, FieldChoice]:
+    """Go to longer spans while the likelihood gains by it, which a truth smoother than any of the fields makes it do.
+
+    What such spans cannot follow counts as noise: where the noise grows, it is the truth that they cut.
+    """
+    simplest = best
+    for space in coarser:
+        level = on(space, [simplest.field])
+        if level.value > simplest.value or level.field.noise > LOUDER * best.field.noise:
+            break
+        simplest = level
+    chosen = simplest if simplest.value < best.value - GAIN else best
+    return chosen.space, chosen.field
+
+
+def _finer(area: Rectangle, degree: int, limit: int) -> Iterator[TensorSpace]:
+    """Yield spaces of ever shorter spans: down to those of evenly spaced points, then that of points in groups."""
+    count = FIRST_LEVEL
+    while 2 * count <= limit:
+        count *= 2
+        yield even_space(area, EVEN, degree, count)
+    yield even_space(area, CLOSE, degree, limit)
+
+
+def _coarser(area: Rectangle, degree: int, size: int) -> Iterator[TensorSpace]:
+    """Yield spaces of ever longer spans."""
+    while (space := even_space(area, EVEN, degree, int(COARSER * size))).size < size and space.size > COARSEST:
+        size = space.size
+        yield space
+
+
+def longest_span(space: TensorSpace) -> float:
+    """Return the longest span of a space."""
+    return max(float(np.diff(knots).max()) for knots in (space.knots_u, space.knots_v))
