@@ -120,6 +120,14 @@ def test_simple_cubic_packs(solid):
     assert found == pytest.approx((found[0],) * 3, rel=3e-3)
 
 
+@pytest.mark.parametrize(("lattice", "cell"), [("bcc", 70), ("fcc", 40), ("fcc", 64)])
+def test_networks_of_centred_packs(lattice, cell):
+    """Their windows lie at a slant to the axes, at corners of cells the squeezed image of a triangle."""
+    radius, truth = drag_permeability(lattice, cell, *TOUCHING[lattice])
+    found = network_k(pack(lattice, cell, 1, radius=radius))
+    assert found == pytest.approx((truth,) * 3, rel=0.25)
+
+
 @pytest.mark.parametrize("solid", DRAG)
 def test_the_laplace_solve_of_simple_cubic_packs(solid):
     """The work of viscosity makes it hold from a few grains in a stream to touching ones."""
