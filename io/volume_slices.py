@@ -18,7 +18,7 @@ from geofit.io.volume_zarr import open_zarr
 from geofit.io.volumes import RAW, TIFF, is_zarr
 from geofit.pores.sliced import SlicedVolume, Voxels
 
-__all__ = ["open_volume"]
+__all__ = ["map_voxels", "open_volume", "sliceable"]
 
 
 class _TiffPages:
@@ -116,6 +116,29 @@ def open_volume(
     try:
         values, stated = _voxels(path, shape, dtype, name)
         return SlicedVolume(values, pore=pore, voxel=stated if voxel is None else voxel)
+    except OSError as error:
+        raise InputError(
+            message("io.file-damaged-incomplete", "the file is damaged or incomplete ({error})", error=error),
+            message("io.copy-export-again", "Copy or export it again."),
+            file=str(path),
+        ) from None
+
+
+def sliceable(path: Path) -> bool:
+    """Return whether :func:`map_voxels` can read a volume: a file of one array, which is never packed."""
+    return path.suffix.lower() in (*RAW, ".npy") and path.is_file()
+
+
+def map_voxels(path: Path) -> Voxels:
+    """Return the values of a volume's voxels, which stay on the disk until slices are asked for.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or damaged, or its shape is unknown.
+    """
+    try:
+        return _voxels(path, None, None, None)[0]
     except OSError as error:
         raise InputError(
             message("io.file-damaged-incomplete", "the file is damaged or incomplete ({error})", error=error),

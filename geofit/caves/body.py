@@ -17,17 +17,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.bodies.implicit_body import OwnField
 from geofit.caves.adjust import AdjustedSurvey, adjust_survey
+from geofit.caves.columns import Columns, columns
 from geofit.caves.sections import Sections, sections
 from geofit.caves.survey import Survey
+from geofit.caves.sweep_loops import SweepCells, ranges
+from geofit.caves.sweeps import Sweeps
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 
 if TYPE_CHECKING:
-    from geofit.caves.columns import Columns
-    from geofit.caves.sweep_loops import SweepCells
     from geofit.implicit.mesh import TriangleMesh
 
-__all__ = ["Ends", "PassageBody", "Sweeps", "centreline_body"]
+__all__ = ["Ends", "PassageBody", "centreline_body"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -37,49 +38,6 @@ Ends = Literal["round", "flat"]
 STEEP = 60.0
 #: A wall is no nearer than this, so that a station at a wall leaves a body, metres.
 THIN = 0.05
-
-
-@dataclass(frozen=True, eq=False)
-class Sweeps:
-    """One swept section a shot, as arrays for the compiled loops.
-
-    Parameters
-    ----------
-    origin, along, right, up : (k, 3) array
-        Start of each shot and its orthonormal frame.
-    length : (k,) array
-        Lengths, metres.
-    walls : (k, 2, 4) array
-        Semi-axes left, right, up and down across the shot at start and end, metres.
-    cap : (k, 2) array
-        Semi-axis of the ellipsoid along the shot at start and end; 0 for a flat end.
-    branch : (k,) array of int
-        Branch of each shot: a chain of shots between junctions and ends.
-    """
-
-    origin: Floats
-    along: Floats
-    right: Floats
-    up: Floats
-    length: Floats
-    walls: Floats
-    cap: Floats
-    branch: Ints
-
-    @property
-    def volumes(self) -> Floats:
-        """Volume (k,) of each sweep without its caps, cubic metres."""
-        return swept_volumes(self.length, self.walls)
-
-
-def swept_volumes(length: Floats, walls: Floats) -> Floats:
-    """Return the volumes (k,) of sections that are linear between walls (k, 2, 4), exactly (Simpson's rule)."""
-    area = [_area(walls[:, 0]), _area(walls.mean(axis=1)), _area(walls[:, 1])]
-    return np.asarray(length * (area[0] + 4 * area[1] + area[2]) / 6)
-
-
-def _area(walls: Floats) -> Floats:
-    return np.asarray(np.pi / 4 * (walls[:, 0] + walls[:, 1]) * (walls[:, 2] + walls[:, 3]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,8 +96,6 @@ class PassageBody(OwnField):
 
     def range_in(self, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
         """Return bounds (k,), (k,) of the field in boxes with corners (k, 3)."""
-        from geofit.caves.sweep_loops import ranges
-
         return ranges(self.sweeps, self.blend, np.asarray(lower, float), np.asarray(upper, float))
 
     @property
@@ -173,9 +129,8 @@ class PassageBody(OwnField):
 
     def columns(self, spacing: float | None = None) -> Columns:
         """Return the body as vertical intervals on a grid in plan, for volumes (:mod:`geofit.caves.columns`)."""
-        from geofit.caves.columns import columns
-
-        return columns(self, _spacing(spacing if spacing is not None else self.fine))
+        step = _spacing(spacing if spacing is not None else self.fine)
+        return columns(self.sweeps, self.blend, self.boxes, step)
 
     def volume(self, spacing: float | None = None) -> float:
         """Return the volume in cubic metres; overlaps of passages count once."""
@@ -183,8 +138,6 @@ class PassageBody(OwnField):
 
     @cached_property
     def _cells(self) -> SweepCells:
-        from geofit.caves.sweep_loops import SweepCells
-
         return SweepCells(self.sweeps, self.blend, self.bounds)
 
     @property

@@ -9,15 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geofit.caves.sweep_loops import paint_sweeps
-
-if TYPE_CHECKING:
-    from geofit.caves.body import PassageBody
+from geofit.caves.sweeps import Sweeps
 
 __all__ = ["Columns", "columns"]
 
@@ -56,9 +54,9 @@ class Columns:
         return float((self.share * (self.high - self.low)).sum() * self.spacing**2)
 
 
-def columns(body: PassageBody, spacing: float) -> Columns:
-    """Return the vertical intervals of a body of passages."""
-    low, high = body.bounds
+def columns(sweeps: Sweeps, blend: float, boxes: tuple[Floats, Floats], spacing: float) -> Columns:
+    """Return the vertical intervals inside the union of sweeps, given the box (k, 3), (k, 3) round each of them."""
+    low, high = boxes[0].min(axis=0), boxes[1].max(axis=0)
     origin = low - 1.5 * spacing
     nx, ny, nz = (np.ceil((high - origin) / spacing) + 2).astype(int).tolist()
     # Slabs overlap by two layers: a cell needs its neighbours.
@@ -70,7 +68,7 @@ def columns(body: PassageBody, spacing: float) -> Columns:
         for side in range(1, ny - 1, wide):
             start = origin + spacing * np.array([first - 1.0, side - 1.0, 0.0])
             shape = (min(thick, nx - 1 - first) + 2, min(wide, ny - 1 - side) + 2, nz)
-            share = _shares()(paint_sweeps(body.sweeps, body.blend, body.boxes, start, spacing, shape), spacing)
+            share = _shares()(paint_sweeps(sweeps, blend, boxes, start, spacing, shape), spacing)
             found.append(_intervals(share, start, spacing))
     x, y, bottom, top, part = (np.concatenate(parts) for parts in zip(*found, strict=True))
     return Columns(x, y, bottom, top, part, spacing)

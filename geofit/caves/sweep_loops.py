@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from geofit.caves.body import Sweeps
+from geofit.caves.sweeps import Sweeps
 
 __all__ = ["SweepCells", "paint_sweeps", "ranges"]
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.caves.body import THIN, PassageBody, across, swept_volumes
+from geofit.caves.body import THIN, PassageBody, across
+from geofit.caves.sweeps import swept_volumes
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 

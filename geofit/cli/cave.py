@@ -45,8 +45,9 @@ def cave(
     as_json: Json = False,
 ) -> int:
     """Adjust a cave survey; give volume, surface, strata and distance to an excavation."""
+    from geofit.data.progress import tell
     from geofit.io.surface_files import read_surfaces
-    from geofit.project.cave_run import read_survey, run_cave
+    from geofit.project.cave_run import measure_passages, read_survey, write_passages
 
     measured = read_survey(survey)
     planned = None if excavation is None else read_survey(excavation)
@@ -54,15 +55,11 @@ def cave(
     print_issues(measured.issues)
     print_counts(measured.counts)
     with listening() as progress:
-        run = run_cave(
-            measured,
-            out,
-            radius=radius,
-            spacing=spacing,
-            excavation=planned,
-            horizons=horizons,
-            progress=progress,
+        run = measure_passages(
+            measured, radius=radius, spacing=spacing, excavation=planned, horizons=horizons, progress=progress
         )
+        tell(progress, "files", 0.9)
+        run = write_passages(run, out)
         if report:
             from geofit.data.languages import language
             from geofit.project.cave_report import write_cave_report

@@ -66,7 +66,7 @@ def isosurface(field: Field, lattice: Lattice, *, capped: bool = False, slivers:
     for first in range(0, len(blocks), batch):
         nodes = _nodes(blocks[first : first + batch])
         part = np.full(nodes.shape[:-1], np.inf)
-        inside = ((nodes >= 0) & (nodes < lattice.shape)).all(axis=-1)
+        inside = _inside(blocks[first : first + batch], lattice)
         part[inside] = field.value(lattice.origin + lattice.spacing * nodes[inside])
         values[first : first + batch] = part
     crossed = _crossings(values, blocks, np.array(lattice.shape) - 1 + int(capped))
@@ -177,6 +177,13 @@ def _nodes(blocks: Ints) -> Ints:
     """Nodes of blocks given by their first node, (k, 9, 9, 9, 3), x fastest as VTK stores them."""
     local = np.stack(np.meshgrid(*[np.arange(BLOCK + 1)] * 3, indexing="ij"), axis=-1)[..., ::-1]
     return np.asarray(blocks[:, None, None, None] + local)
+
+
+def _inside(blocks: Ints, lattice: Lattice) -> NDArray[np.bool_]:
+    """Return which nodes of blocks the lattice has, (k, 9, 9, 9), x fastest."""
+    along = blocks[:, :, None] + np.arange(BLOCK + 1)
+    has = (along >= 0) & (along < np.array(lattice.shape)[:, None])
+    return np.asarray(has[:, 2, :, None, None] & has[:, 1, None, :, None] & has[:, 0, None, None, :])
 
 
 def _blocks_with_surface(field: Field, lattice: Lattice, capped: bool) -> Ints:

@@ -1,4 +1,4 @@
-"""Balls painted into a grid: their union, the balls that suffice for it, the widest ball over each voxel."""
+"""Balls painted into a grid: their union and the balls that suffice for it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-__all__ = ["covering", "farthest_squares", "paint_union", "paint_widest"]
+__all__ = ["covering", "farthest_squares", "paint_union"]
 
 
 @njit(cache=True)
@@ -42,25 +42,6 @@ def paint_union(
                 h2 = _half_width(rest0 - squares[1] * (b - j) ** 2, squares[2])
                 for c in range(max(k - h2, 0), min(k + h2 + 1, n2)):
                     out[a, b, c] = True
-
-
-@njit(cache=True)
-def paint_widest(
-    centre: NDArray[np.int32], reach2: NDArray[np.float64], squares: NDArray[np.float64], out: NDArray[np.int32]
-) -> None:
-    """Write to each voxel the number of the first ball in the list that covers it; elsewhere ``out`` stays -1."""
-    n0, n1, n2 = out.shape
-    for ball in range(len(centre)):
-        i, j, k = centre[ball]
-        h0 = _half_width(reach2[ball], squares[0])
-        for a in range(max(i - h0, 0), min(i + h0 + 1, n0)):
-            rest0 = reach2[ball] - squares[0] * (a - i) ** 2
-            h1 = _half_width(rest0, squares[1])
-            for b in range(max(j - h1, 0), min(j + h1 + 1, n1)):
-                h2 = _half_width(rest0 - squares[1] * (b - j) ** 2, squares[2])
-                for c in range(max(k - h2, 0), min(k + h2 + 1, n2)):
-                    if out[a, b, c] < 0:
-                        out[a, b, c] = ball
 
 
 def covering(reach2: NDArray[Any], squares: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -65,9 +65,10 @@ def contact_values(
                 for p in range(start[row_of_cells + first_k], start[row_of_cells + end_k]):
                     x, y, z = x0 - points[p, 0], y0 - points[p, 1], z0 - points[p, 2]
                     own, force = (square, 1.0) if held[p] == 0.0 else (1.0, _FORCE)
-                    q = (x * x + y * y + z * z) / own
-                    if q >= 1.0:
+                    away = x * x + y * y + z * z
+                    if away >= own:
                         continue
+                    q = away / own
                     w = force * (1.0 - q) ** 3 / (q + _NEAREST)
                     total += w
                     height += w * (x * normals[p, 0] + y * normals[p, 1] + z * normals[p, 2] + held[p])
@@ -107,9 +108,10 @@ def contact_gradients(
                 for p in range(start[row_of_cells + first_k], start[row_of_cells + end_k]):
                     x, y, z = x0 - points[p, 0], y0 - points[p, 1], z0 - points[p, 2]
                     own, force = (square, 1.0) if held[p] == 0.0 else (1.0, _FORCE)
-                    q = (x * x + y * y + z * z) / own
-                    if q >= 1.0:
+                    away = x * x + y * y + z * z
+                    if away >= own:
                         continue
+                    q = away / own
                     near = q + _NEAREST
                     w = force * (1.0 - q) ** 3 / near
                     dw = force * (-3.0 * (1.0 - q) ** 2 / near - (1.0 - q) ** 3 / near**2) * 2.0 / own

@@ -1,8 +1,6 @@
-"""Where the maximal balls touch the rock: contact points, and the width of the passage that a ball lies in."""
+"""Where the maximal balls touch the rock."""
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -10,82 +8,7 @@ from numpy.typing import NDArray
 
 from geofit.pores.balls import MaximalBalls
 
-__all__ = ["Passages", "contact_points", "passages"]
-
-#: Difference of the two largest moments in a slit, and the power that keeps chance from looking flat.
-_SLIT, _SHARPNESS = 0.7, 8
-
-
-class Passages(NamedTuple):
-    """What a ball says about the passage it lies in.
-
-    ``half_width`` is its radius if the centre could lie between voxels; ``flatness`` runs from 0 (walls all round, a
-    tube) to 1 (walls on two sides, a slit).
-    """
-
-    half_width: NDArray[np.float64]
-    flatness: NDArray[np.float64]
-
-
-def passages(balls: MaximalBalls, pore: NDArray[np.bool_]) -> Passages:
-    """Return half width and flatness of the passage round each ball.
-
-    The directions of the rock voxels just outside the ball have a tensor of second moments. Its largest eigenvalue
-    exceeds the next by 1 in a slit and by 0 in a tube (and in a chamber).
-    """
-    squares = np.square(balls.edges)
-    half, moments = _walls(balls.centre, balls.reach2.astype(np.float64), pore, np.sqrt(squares))
-    values = np.linalg.eigvalsh(moments)
-    total = np.maximum(values.sum(axis=1), 1e-300)
-    # The shell smears the two walls of a slit: 0.7 is reached there. Few contacts look flat by chance, so only clear
-    # cases count.
-    flat = np.clip((values[:, 2] - values[:, 1]) / total / _SLIT, 0.0, 1.0)
-    return Passages(half, flat**_SHARPNESS)
-
-
-@njit(cache=True)
-def _walls(
-    centre: NDArray[np.int32], reach2: NDArray[np.float64], pore: NDArray[np.bool_], edges: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    n = pore.shape
-    half = np.empty(len(centre))
-    moments = np.zeros((len(centre), 3, 3))
-    place = np.empty(3)
-    for ball in range(len(centre)):
-        radius = np.sqrt(reach2[ball])
-        outer = radius + 0.75
-        r0, r1, r2 = int(outer / edges[0]), int(outer / edges[1]), int(outer / edges[2])
-        normal = np.zeros(3)
-        nearest = np.inf
-        for a in range(-r0, r0 + 1):
-            for b in range(-r1, r1 + 1):
-                for c in range(-r2, r2 + 1):
-                    x, y, z = a * edges[0], b * edges[1], c * edges[2]
-                    square = x * x + y * y + z * z
-                    if square < reach2[ball] or square > outer * outer:
-                        continue
-                    i, j, k = centre[ball, 0] + a, centre[ball, 1] + b, centre[ball, 2] + c
-                    if i < 0 or j < 0 or k < 0 or i >= n[0] or j >= n[1] or k >= n[2] or pore[i, j, k]:
-                        continue
-                    place[0], place[1], place[2] = x, y, z
-                    if square < nearest:
-                        nearest = square
-                        normal[:] = place / np.sqrt(square)
-                    for u in range(3):
-                        for v in range(3):
-                            moments[ball, u, v] += place[u] * place[v] / square
-        # The wall opposite to the contact: a centre between voxels would lie half-way.
-        far = radius - 0.375
-        while far < radius + 0.625:
-            i = int(np.floor(centre[ball, 0] - normal[0] * far / edges[0] + 0.5))
-            j = int(np.floor(centre[ball, 1] - normal[1] * far / edges[1] + 0.5))
-            k = int(np.floor(centre[ball, 2] - normal[2] * far / edges[2] + 0.5))
-            if i < 0 or j < 0 or k < 0 or i >= n[0] or j >= n[1] or k >= n[2] or not pore[i, j, k]:
-                break
-            far += 0.25
-        # The voxel is entered half a voxel before its middle; the steps overshoot by half a step on average.
-        half[ball] = 0.5 * (radius + far + 0.375)
-    return half, moments
+__all__ = ["contact_points"]
 
 
 def contact_points(balls: MaximalBalls, pore: NDArray[np.bool_]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -18,7 +18,7 @@ def assemble(
     edges: NDArray[np.float64],
 ) -> tuple[tuple[NDArray[np.int32], NDArray[np.float64]], NDArray[np.float64], NDArray[np.float64]]:
     """Return the conductances to the three lower neighbours of each voxel, the diagonal, and those to both faces."""
-    _, n1, n2 = weights.shape
+    _, n1, n2 = number.shape
     count = len(order)
     neighbour = np.full((count, 3), -1, np.int32)
     conductance = np.zeros((count, 3))
@@ -28,10 +28,10 @@ def assemble(
     for row in range(count):
         here = order[row]
         i, j, k = here // (n1 * n2), here // n2 % n1, here % n2
-        own = weights[i, j, k]
+        own = weights[row]
         for d in range(3):
             a, b, c = i - (d == 0), j - (d == 1), k - (d == 2)
-            place, last = (i, j, k)[d], weights.shape[d] - 1
+            place, last = (i, j, k)[d], number.shape[d] - 1
             if d == axis and place == 0:
                 source[0, row] = 2.0 * own * area[d]
                 diagonal[row] += source[0, row]
@@ -41,7 +41,7 @@ def assemble(
             if place == 0 or number[a, b, c] < 0:
                 continue
             other = number[a, b, c]
-            there = weights[a, b, c]
+            there = weights[other]
             link = area[d] * 2.0 * own * there / (own + there)
             neighbour[row, d], conductance[row, d] = other, link
             diagonal[row] += link

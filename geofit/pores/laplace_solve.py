@@ -27,8 +27,8 @@ Links = tuple[NDArray[np.int32], Floats]
 
 def conjugate_gradients(
     links: Links, diagonal: Floats, source: Floats, piece: NDArray[np.int32], start: Floats, tolerance: float, most: int
-) -> tuple[float, int]:
-    """Return the flow between the faces, and the steps that it took.
+) -> tuple[Floats, float, int]:
+    """Return the pressures, the flow between the faces, and the steps that it took.
 
     The flow is the energy of the pressures: its error is of second order in theirs, the square of their error in the
     norm of the matrix. What the last steps took off that bounds what is left (Hestenes & Stiefel 1952). A residual
@@ -49,6 +49,7 @@ def conjugate_gradients(
 
     Returns
     -------
+    pressure : ndarray, shape (n,)
     flow : float
     steps : int
         -1 if ``most`` steps were not enough.
@@ -74,7 +75,7 @@ def conjugate_gradients(
         if step % _LOOK == 0 or product <= rounding:
             flow = float((source * (1.0 - x)).sum() - (x * residual).sum())
             if product <= rounding or (step and gained <= tolerance * flow):
-                return flow, step
+                return x, flow, step
             gained = 0.0
         image[:] = 0.0
         apply(neighbour, conductance, diagonal, direction, image, 1.0)
@@ -83,7 +84,7 @@ def conjugate_gradients(
         step_along(x, residual, direction, image, alpha)
         before, product = product, improve()
         combine(direction, z, product / before)
-    return 0.0, -1
+    return x, 0.0, -1
 
 
 def pieces_in_blocks(

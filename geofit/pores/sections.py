@@ -134,8 +134,8 @@ def _ducts(
         if projected > 0:
             area = np.sqrt((vector[window] ** 2).sum())
             tilt = min(max(area / projected, 1.0), np.sqrt(3.0))
-        # What tilting does to a circle: it becomes an ellipse with one longer axis.
-        conductance[window] = flow * 2.0 * tilt**3 / (1.0 + tilt**2)
+        # A circle seen at a slant is an ellipse with one shorter axis.
+        conductance[window] = flow * tilt * (1.0 + tilt**2) / 2.0
         perimeter[window] = _perimeter(cell, edges[u], edges[v]) * (1.0 + tilt) / 2.0
     return conductance, perimeter
 

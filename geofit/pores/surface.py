@@ -64,6 +64,8 @@ class ContactField:
         Contacts in units of the shortest voxel edge from the low corner, and unit vectors into the rock.
     pore : ndarray of bool
         The voxels that the body is to fill.
+    rock_below : ndarray of int, one longer along each axis
+        Count of rock voxels before each corner of voxels along all axes.
     edges : tuple of float
         Edges of a voxel in units of the shortest one.
     unit : float
@@ -78,6 +80,7 @@ class ContactField:
     points: Floats
     normals: Floats
     pore: NDArray[np.bool_] = field(repr=False)
+    rock_below: NDArray[np.int64] = field(repr=False)
     edges: tuple[float, float, float]
     unit: float
     shift: float = 0.0
@@ -98,11 +101,15 @@ class ContactField:
 
     def value(self, xyz: Floats) -> Floats:
         """Return the field at (n, 3) points."""
+        return np.asarray((self.heights(xyz) - self.shift) * self.unit)
+
+    def heights(self, xyz: Floats) -> Floats:
+        """Return the field at (n, 3) points before the shift, in units of the shortest edge."""
         from geofit.pores.contact_field import contact_values
 
         out = np.empty(len(xyz))
         self._in_parts(contact_values, xyz, out)
-        return np.asarray((out - self.shift) * self.unit)
+        return out
 
     def gradient(self, xyz: Floats) -> Floats:
         """Return the gradient at (n, 3) points."""
@@ -131,13 +138,6 @@ class ContactField:
         """Infinite: averaged planes have no simple bound; :meth:`range_in` saves the work instead."""
         return float("inf")
 
-    @cached_property
-    def _rock_below(self) -> NDArray[np.int64]:
-        """Summed-area table of rock voxels."""
-        table = np.zeros(np.array(self.pore.shape) + 1, np.int64)
-        table[1:, 1:, 1:] = (~self.pore).cumsum(0).cumsum(1).cumsum(2)
-        return table
-
     def range_in(self, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
         """Return bounds in boxes: one sign where all voxels within reach of a contact are of one kind, else none."""
         edge, size = np.array(self.edges), np.array(self.pore.shape)
@@ -147,7 +147,7 @@ class ContactField:
         for corner in range(8):
             high = np.array([corner >> axis & 1 for axis in range(3)], bool)
             at = np.where(high, last, first)
-            rock += (-1) ** (3 - int(high.sum())) * self._rock_below[at[:, 0], at[:, 1], at[:, 2]]
+            rock += (-1) ** (3 - int(high.sum())) * self.rock_below[at[:, 0], at[:, 1], at[:, 2]]
         voxels = (last - first).prod(axis=1)
         low = np.where(rock == voxels, self.unit * (1 - self.shift), -np.inf)
         high_ = np.where(rock == 0, -self.unit * (1 + self.shift), np.inf)
@@ -336,41 +336,59 @@ def _contact_field(volume: RockVolume) -> ContactField:
     reach2 = squared_distance(volume.pore, border, volume.edges)
     balls = balls_of_distance(reach2, "exact" if volume.cubic else "cover", volume.edges)
     index, normals = contact_points(balls, volume.pore)
-    raw = ContactField((index + 0.5) * volume.edges, normals, volume.pore, volume.edges, volume.unit)
+    below = np.zeros(np.array(volume.shape) + 1, np.int64)
+    below[1:, 1:, 1:] = (~volume.pore).cumsum(0).cumsum(1).cumsum(2)
+    raw = ContactField((index + 0.5) * volume.edges, normals, volume.pore, below, volume.edges, volume.unit)
     # The surface lies within a voxel of the voxels' own; there the share of a voxel inside is 1/2 - f.
     near = np.flatnonzero(_beside_wall(volume.pore))
     middles = (np.stack(np.unravel_index(near, volume.shape), axis=1) + 0.5) * np.array(volume.voxel)
-    values = raw.value(middles) / volume.unit
+    heights = raw.heights(middles)
     wanted = float(np.count_nonzero(volume.pore.ravel()[near]))
     low, high = -1.0, 1.0
     for _ in range(40):
         shift = 0.5 * (low + high)
-        if np.clip(0.5 - (values - shift), 0.0, 1.0).sum() < wanted:
+        if np.clip(0.5 - (heights - shift), 0.0, 1.0).sum() < wanted:
             low = shift
         else:
             high = shift
     body = replace(raw, shift=0.5 * (low + high))
     # Voxels that are held change the volume a little, and another volume the faults.
     for _ in range(ROUNDS):
-        body = _rescued(_of_equal_volume(body, volume), volume, near, middles)
-    return _rescued(_of_equal_volume(body, volume), volume, near, middles)
+        body = _rescued(_of_equal_volume(body, volume), volume, near, heights)
+    return _rescued(_of_equal_volume(body, volume), volume, near, heights)
 
 
-def _rescued(body: ContactField, volume: RockVolume, near: NDArray[np.int64], middles: Floats) -> ContactField:
+def _rescued(body: ContactField, volume: RockVolume, near: NDArray[np.int64], heights: Floats) -> ContactField:
     """Return the body with the parts, tunnels and cavities of its voxels, as far as the middles of voxels tell.
 
-    Only voxels next to the wall, whose flat indices and middles are given, can have the wrong sign.
+    Only voxels next to the wall can have the wrong sign: their flat indices and heights without held voxels are given.
     """
     from geofit.pores.topology import topology_faults
 
     for _ in range(RESCUES):
         rebuilt = volume.pore.copy()
-        rebuilt.ravel()[near] = body.value(middles) < 0
+        rebuilt.ravel()[near] = _with_held(body, volume, near, heights) < body.shift
         faults = topology_faults(rebuilt, volume.pore)
         if not len(faults):
             break
         body = replace(body, held=np.unique(np.concatenate([body.held, faults]), axis=0))
     return body
+
+
+def _with_held(body: ContactField, volume: RockVolume, near: NDArray[np.int64], heights: Floats) -> Floats:
+    """Return the heights with what held voxels change: they reach as far as the next voxels."""
+    if not len(body.held):
+        return heights
+    around = np.zeros(volume.shape, bool)
+    reach = np.ceil(1.0 / np.array(volume.edges)).astype(int)
+    for i, j, k in body.held:
+        low = np.maximum((i, j, k) - reach, 0)
+        around[low[0] : i + reach[0] + 1, low[1] : j + reach[1] + 1, low[2] : k + reach[2] + 1] = True
+    changed = np.flatnonzero(around.ravel()[near])
+    places = np.stack(np.unravel_index(near[changed], volume.shape), axis=1)
+    out = heights.copy()
+    out[changed] = body.heights((places + 0.5) * np.array(volume.voxel))
+    return out
 
 
 def _of_equal_volume(body: ContactField, volume: RockVolume) -> ContactField:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from geofit.caves.uncertainty import VolumeEstimate
     from geofit.implicit.mesh import TriangleMesh
 
-__all__ = ["CaveRun", "cut_passages", "measure_passages", "read_survey", "run_cave", "write_passages"]
+__all__ = ["CaveRun", "cut_passages", "measure_passages", "read_survey", "write_passages"]
 
 #: Spacing of the triangles, in units of the spacing that resolves most sections.
 COARSER = 3.0
@@ -113,9 +113,8 @@ def read_survey(path: Path) -> Survey:
             return read_centreline(path)
 
 
-def run_cave(
+def measure_passages(
     survey: Survey,
-    out: Path,
     *,
     radius: float | None = None,
     spacing: float | None = None,
@@ -123,18 +122,12 @@ def run_cave(
     horizons: Mapping[str, Horizon] | None = None,
     progress: Progress | None = None,
 ) -> CaveRun:
-    """Adjust a survey, make its passages a body, and write it.
-
-    The files: ``NAME_stations.csv``, ``NAME_loops.csv``, ``NAME_filled_walls.csv``, the body as ``NAME.stl`` and
-    ``.vtp``, and ``NAME.json`` with the figures; ``NAME_strata.csv`` with horizons, ``NAME_clearance.csv`` with an
-    excavation.
+    """Adjust a survey and make its passages a body.
 
     Parameters
     ----------
     survey : Survey
         What was measured.
-    out : Path
-        Folder for the files; created if missing. Each file is whole or absent.
     radius : float, optional
         Distance of the walls of a survey without walls, metres.
     spacing : float, optional
@@ -145,31 +138,6 @@ def run_cave(
         Horizons from the top down that cut the passages into strata.
     progress : callable, optional
         ``progress(stage, fraction)``; False stops.
-
-    Raises
-    ------
-    SurveyError, SettingsError
-        As for :func:`geofit.centreline_body`.
-    InputError
-        If a file cannot be written.
-    """
-    run = measure_passages(
-        survey, radius=radius, spacing=spacing, excavation=excavation, horizons=horizons, progress=progress
-    )
-    tell(progress, "files", 0.9)
-    return write_passages(run, out)
-
-
-def measure_passages(
-    survey: Survey,
-    *,
-    radius: float | None = None,
-    spacing: float | None = None,
-    excavation: Survey | None = None,
-    horizons: Mapping[str, Horizon] | None = None,
-    progress: Progress | None = None,
-) -> CaveRun:
-    """Adjust a survey and make its passages a body, as :func:`run_cave` does, but write nothing.
 
     Raises
     ------
@@ -213,7 +181,17 @@ def cut_passages(run: CaveRun, horizons: Mapping[str, Horizon], progress: Progre
 
 
 def write_passages(run: CaveRun, out: Path) -> CaveRun:
-    """Write the files of a run as :func:`run_cave` names them; return the run with them.
+    """Write the files of a run; return the run with them.
+
+    The files: ``NAME_stations.csv``, ``NAME_loops.csv``, ``NAME_filled_walls.csv``, the body as ``NAME.stl`` and
+    ``.vtp``, and ``NAME.json`` with the figures; ``NAME_strata.csv`` with horizons, ``NAME_clearance.csv`` with an
+    excavation.
+
+    Parameters
+    ----------
+    run : CaveRun
+    out : Path
+        Folder for the files; created if missing. Each file is whole or absent.
 
     Raises
     ------

@@ -12,11 +12,16 @@ from numpy.typing import NDArray
 from geofit.data.progress import Progress, tell, within
 
 if TYPE_CHECKING:
-    from geofit.pores.components import Connectivity
     from geofit.pores.network import PoreNetwork
     from geofit.pores.permeability import Permeability
+    from geofit.pores.sliced import Voxels
+    from geofit.pores.volume import RockVolume
 
 __all__ = ["GreyVolume", "PoreView", "pore_view", "read_grey"]
+
+#: Voxels of a volume from which on its network is found slab by slab, without a surface: it would have more triangles
+#: than can be looked at.
+LARGE = 2 * 10**8
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +42,8 @@ class GreyVolume:
         Otsu's threshold.
     each : tuple of int and array, or None
         The smallest value, and how many voxels have it and each whole number above it; None where these are too many.
+    file : path or None
+        The file, if another process can read its voxels slice by slice.
     """
 
     name: str
@@ -46,6 +53,7 @@ class GreyVolume:
     edges: NDArray[np.float64]
     threshold: float | None
     each: tuple[int, NDArray[np.int64]] | None = None
+    file: Path | None = None
 
     def share(self, low: float, high: float) -> float:
         """Return the share of voxels whose values are between two values, both included."""
@@ -67,19 +75,20 @@ class PoreView:
         Without the pore of each voxel.
     permeability : Permeability
         Of the network.
-    connectivity : Connectivity
-        Of the voxels.
+    porosity, connected : float
+        Share of pore voxels, and of those from which a path of pore voxels leads to a face of the sample.
     axes : (n,) array of int
         Along how many axes the pores connected to each pore percolate.
     vertices, triangles : arrays
-        Surface of the pores, (m, 3) and (k, 3).
+        Surface of the pores, (m, 3) and (k, 3); none of a volume that is too large for it.
     vertex_pore : (m,) array of int
         The pore at each vertex, counted from 0.
     """
 
     network: PoreNetwork
     permeability: Permeability
-    connectivity: Connectivity
+    porosity: float
+    connected: float
     axes: NDArray[np.int64]
     vertices: NDArray[np.float32]
     triangles: NDArray[np.int64]
@@ -94,6 +103,7 @@ def read_grey(path: Path, progress: Progress | None = None) -> GreyVolume:
     InputError, VolumeError
         As for :func:`geofit.read_volume`, if the file cannot be read or is not a volume.
     """
+    from geofit.io.volume_slices import sliceable
     from geofit.io.volumes import read_voxels
     from geofit.pores.threshold import grey_histogram, histogram_of_counts, otsu_of_histogram, value_counts
     from geofit.pores.volume import check_array
@@ -107,11 +117,11 @@ def read_grey(path: Path, progress: Progress | None = None) -> GreyVolume:
     each = value_counts(values)
     counts, edges = grey_histogram(values) if each is None else histogram_of_counts(*each)
     threshold = otsu_of_histogram(counts, edges) if np.count_nonzero(counts) > 2 else None
-    return GreyVolume(path.name, values, voxel, counts, edges, threshold, each)
+    return GreyVolume(path.name, values, voxel, counts, edges, threshold, each, path if sliceable(path) else None)
 
 
 def pore_view(
-    values: NDArray[Any],
+    source: NDArray[Any] | Path,
     low: float,
     high: float,
     voxel: tuple[float, ...],
@@ -119,40 +129,80 @@ def pore_view(
 ) -> PoreView:
     """Return network and surface of the pores whose values are between ``low`` and ``high``, both included.
 
+    Parameters
+    ----------
+    source : (n0, n1, n2) array or path
+        Values of the voxels, or the file that has them; of a large file only slabs are in memory.
+    low, high : float
+    voxel : tuple of float
+        Edges of a voxel in metres.
+    progress : callable, optional
+        ``progress(stage, fraction)``; False stops.
+
     Raises
     ------
+    InputError
+        If the file cannot be read.
     VolumeError
         If no voxel is pore, or the voxel is not a length.
     Cancelled
         If the listener asks to stop; asked at every stage.
     """
+    from geofit.io.volume_slices import map_voxels
     from geofit.pores.components import connectivity
     from geofit.pores.extraction import pore_network
     from geofit.pores.permeability import network_permeability
-    from geofit.pores.surface import pore_surface
+    from geofit.pores.sliced import SlicedVolume
     from geofit.pores.volume import RockVolume
 
-    volume = RockVolume((values >= low) & (values <= high), pore=[True], voxel=voxel)
+    values = map_voxels(source) if isinstance(source, Path) else source
+    if np.prod(values.shape) >= LARGE:
+        sliced = SlicedVolume(_Chosen(values, low, high), pore=[True], voxel=voxel)
+        network = pore_network(sliced, progress=within(progress, 0.1, 0.9))
+        tell(progress, "permeability", 0.9)
+        flow = network_permeability(network)
+        nothing = np.zeros((0, 3), np.float32), np.zeros((0, 3), np.int64), np.zeros(0, np.int64)
+        # All pores of a network are connected to a face, or none is.
+        connected = network.porosity if network.pores.faces.any() else 0.0
+        return PoreView(network, flow, sliced.porosity, connected, _axes(network), *nothing)
+    volume = RockVolume(_Chosen(values, low, high)[:], pore=[True], voxel=voxel)
     network = pore_network(volume, progress=within(progress, 0.0, 0.5))
+    vertices, triangles, pore = _surface(volume, network, progress)
+    tell(progress, "permeability", 0.9)
+    flow = network_permeability(network)
+    tell(progress, "connectivity", 0.95)
+    found = connectivity(volume)
+    network = replace(network, pore_of=None)
+    return PoreView(
+        network, flow, found.porosity, found.connected, _axes(network), vertices.astype(np.float32), triangles, pore
+    )
+
+
+class _Chosen:
+    """Which voxels have values in a range, slice by slice."""
+
+    def __init__(self, values: Voxels, low: float, high: float) -> None:
+        self.shape = tuple(values.shape)
+        self._values, self._low, self._high = values, low, high
+
+    def __getitem__(self, slices: slice) -> NDArray[np.bool_]:
+        part = np.asarray(self._values[slices])
+        return (part >= self._low) & (part <= self._high)
+
+
+def _surface(
+    volume: RockVolume, network: PoreNetwork, progress: Progress | None
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+    """Return vertices in voxels, triangles, and the pore at each vertex."""
+    from geofit.pores.surface import pore_surface
+
     tell(progress, "surface", 0.5)
     surface = pore_surface(volume, network, progress=within(progress, 0.5, 0.6))
     tell(progress, "triangles", 0.6)
     mesh = surface.triangulate()
     vertices = mesh.vertices / volume.unit
-    tell(progress, "permeability", 0.9)
-    flow = network_permeability(network)
-    tell(progress, "connectivity", 0.95)
     assert network.pore_of is not None
-    pore = _pore_at(vertices / network.edges, network.pore_of)
-    return PoreView(
-        replace(network, pore_of=None),
-        flow,
-        connectivity(volume),
-        _axes(network),
-        vertices.astype(np.float32),
-        mesh.triangles,
-        pore,
-    )
+    return vertices, mesh.triangles, _pore_at(vertices / network.edges, network.pore_of)
 
 
 def _axes(network: PoreNetwork) -> NDArray[np.int64]:

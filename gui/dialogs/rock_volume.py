@@ -95,8 +95,9 @@ class RockVolumeDialog(SceneDialog):
         low, high = self.low.value(), self.high.value()
         ready = self.volume is not None and self.edge.value() > 0 and UNSTATED < low <= high
         self.go.setEnabled(ready and not self.running)
-        for widget in (self.colour, self.network, self.surface):
+        for widget in (self.colour, self.network):
             widget.setEnabled(self.view is not None)
+        self.surface.setEnabled(self.view is not None and len(self.view.triangles) > 0)
 
     def _lay_out(self) -> None:
         form = QFormLayout()
@@ -175,7 +176,7 @@ class RockVolumeDialog(SceneDialog):
         self.say("")
         self.begin(
             pore_view,
-            self.volume.values,
+            self.volume.values if self.volume.file is None else self.volume.file,
             self.low.value(),
             self.high.value(),
             voxel,
@@ -192,13 +193,15 @@ class RockVolumeDialog(SceneDialog):
             [TableColumn(self.tr("Figure"), np.array(names)), TableColumn(self.tr("Value"), np.array(values))]
         )
         messages = [translated(text) for text in view.permeability.messages]
+        if not len(view.triangles):
+            messages.append(self.tr("The volume is too large for a surface; cut out a part of it to see one."))
         self.say(
             "\n".join(messages) or self.tr("The pore space connects all faces."), "stale" if messages else "passed"
         )
         self.refresh()
 
     def _figures(self, view: PoreView) -> list[tuple[str, str]]:
-        network, found, unit = view.network, view.connectivity, view.network.unit * MICRO
+        network, unit = view.network, view.network.unit * MICRO
         pores, throats = network.pores, network.throats
         mean = [f"{values.mean() * unit:.2f}" if len(values) else "–" for values in (pores.radius, throats.radius)]
         rows = [
@@ -206,7 +209,7 @@ class RockVolumeDialog(SceneDialog):
             (self.tr("pores without a path to a face, left out"), str(len(network.dropped))),
             (self.tr("mean coordination"), f"{network.coordination.mean():.2f}" if len(pores) else "–"),
             (self.tr("mean radius of pores, throats, µm"), ", ".join(mean)),
-            (self.tr("porosity, connected porosity, %"), f"{100 * found.porosity:.2f}, {100 * found.connected:.2f}"),
+            (self.tr("porosity, connected porosity, %"), f"{100 * view.porosity:.2f}, {100 * view.connected:.2f}"),
         ]
         for axis in range(3):
             title = self.tr("permeability along axis {axis}, mD").format(axis=axis)

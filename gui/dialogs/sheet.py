@@ -160,10 +160,10 @@ class SheetDialog(TaskDialog):
 class LengthField(QDoubleSpinBox):
     """A field for a length in the unit that the windows show."""
 
-    def __init__(self, low: float, high: float, value: float) -> None:
+    def __init__(self, low: float, high: float, value: float, decimals: int = 1) -> None:
         super().__init__()
-        self.setRange(round(shown_length(low), 1), shown_length(high))
-        self.setDecimals(1)
+        self.setRange(round(shown_length(low), decimals), shown_length(high))
+        self.setDecimals(decimals)
         self.setSuffix(f" {length_mark()}")
         self.setValue(value)
 

@@ -9,7 +9,6 @@ import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
-    QDoubleSpinBox,
     QFileDialog,
     QHBoxLayout,
     QLabel,
@@ -22,6 +21,7 @@ from PySide6.QtWidgets import (
 
 from geofit.caves.adjust import AdjustedSurvey
 from geofit.gui.dialogs.scene_dialog import SceneDialog
+from geofit.gui.dialogs.sheet import LengthField
 from geofit.gui.dialogs.survey_tables import figure_rows, issue_columns, loop_columns, stratum_columns, wall_columns
 from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.translate import user_language
@@ -70,10 +70,7 @@ class SurveyDialog(SceneDialog):
             self.tables[name].setAccessibleName(title)
             self.tabs.addTab(self.tables[name], title)
         self.open_button = QPushButton(self.tr("&Open a survey…"))
-        self.radius = QDoubleSpinBox()
-        self.radius.setRange(0.0, 1000.0)
-        self.radius.setDecimals(2)
-        self.radius.setSuffix(" m")
+        self.radius = LengthField(0.0, 1000.0, 0.0, decimals=2)
         self.radius.setSpecialValueText(self.tr("as measured"))
         self.radius.setToolTip(self.tr("Distance of the walls, for a survey that has none"))
         self.cut = QCheckBox(self.tr("Cut by the &horizons of the site"))
@@ -189,7 +186,7 @@ class SurveyDialog(SceneDialog):
     def _make(self) -> None:
         assert self.adjusted is not None
         self.say(self.tr("Making the body…"))
-        radius = self.radius.value() or None
+        radius = self.radius.metres or None
         work = (measured_view, self.adjusted.survey, radius, self._used())
         self.begin(*work, on_done=self._made, on_stopped=self._stopped)
 

@@ -7,6 +7,7 @@ import numpy as np
 from geofit.caves.adjust import AdjustedSurvey, Loop
 from geofit.caves.strata import Stratum
 from geofit.caves.survey import Survey
+from geofit.gui.lengths import in_title, shown_length
 from geofit.gui.panels.tables import TableColumn
 from geofit.gui.translate import translated, user_language
 from geofit.project.cave_run import CaveRun
@@ -25,8 +26,8 @@ def figure_rows(adjusted: AdjustedSurvey, run: CaveRun | None) -> list[tuple[str
     low, high = np.nanmin(adjusted.xyz[:, 2]), np.nanmax(adjusted.xyz[:, 2])
     rows = [
         (t("stations, shots"), f"{len(survey.stations)}, {len(survey.start)}"),
-        (t("surveyed length, m"), f"{survey.length:.1f}"),
-        (t("lowest to highest station, m"), f"{high - low:.1f}"),
+        (in_title(t("surveyed length, m")), f"{shown_length(survey.length):.1f}"),
+        (in_title(t("lowest to highest station, m")), f"{shown_length(float(high - low)):.1f}"),
         (t("loops, those to be checked"), f"{len(adjusted.loops)}, {sum(loop.suspicious for loop in adjusted.loops)}"),
     ]
     if run is None:
@@ -46,7 +47,7 @@ def figure_rows(adjusted: AdjustedSurvey, run: CaveRun | None) -> list[tuple[str
         ("P10", digits.volume(v.p10)),
         ("P90", digits.volume(v.p90)),
         (t("missing walls, all walls"), f"{len(run.body.sections.filled)}, {len(run.body.sections.measured)}"),
-        (t("spacing of the triangles, m"), f"{run.spacing:.3g}"),
+        (in_title(t("spacing of the triangles, m")), f"{shown_length(run.spacing):.3g}"),
         (t("passages thinner than that"), str(len(run.body.thinner_than(run.spacing)))),
     ]
 

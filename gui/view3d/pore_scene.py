@@ -19,8 +19,9 @@ Floats = NDArray[np.float64]
 
 #: Colours of pores that percolate along no, one, two and three axes: from warm to cool.
 CONNECTED = ("#b5452c", "#d9a441", "#5aa6a6", "#0b5c8a")
-#: Sides of a throat's tube, and of a pore's ball.
+#: Sides of a throat's tube, and of a pore's ball; of more pores than ``MANY`` each is a few pixels.
 SIDES, RINGS = 8, 12
+MANY, FEW_SIDES, FEW_RINGS = 20_000, 4, 5
 
 
 class PoreScene(SmallScene):
@@ -49,12 +50,13 @@ class PoreScene(SmallScene):
         centre = (network.pores.centre + 0.5) * network.edges
         balls = pv.PolyData(centre)
         balls["size"] = network.pores.radius
-        ball = pv.Sphere(radius=1.0, theta_resolution=RINGS, phi_resolution=RINGS)
+        sides, rings = (SIDES, RINGS) if len(centre) <= MANY else (FEW_SIDES, FEW_RINGS)
+        ball = pv.Sphere(radius=1.0, theta_resolution=rings, phi_resolution=rings)
         balls["pore"] = np.arange(len(centre))
         if len(centre):
             self.add("pores", balls.glyph(scale="size", orient=False, geom=ball), "network")
         if len(network.throats):
-            self.add("throats", _tubes(centre, network.throats.pores, network.throats.radius), "network")
+            self.add("throats", _tubes(centre, network.throats.pores, network.throats.radius, sides), "network")
         if len(view.triangles):
             surface = pv.PolyData.from_regular_faces(view.vertices, view.triangles)
             surface["pore"] = view.vertex_pore
@@ -98,7 +100,7 @@ class PoreScene(SmallScene):
         self.canvas.render()
 
 
-def _tubes(centre: Floats, pores: NDArray[np.int32], radius: Floats) -> Any:
+def _tubes(centre: Floats, pores: NDArray[np.int32], radius: Floats, sides: int) -> Any:
     """Return the tubes of throats from pore to pore, each with its radius."""
     import pyvista as pv
 
@@ -107,4 +109,4 @@ def _tubes(centre: Floats, pores: NDArray[np.int32], radius: Floats) -> Any:
     lines = pv.PolyData(ends, lines=cells)
     lines["size"] = np.repeat(np.maximum(radius, 0.25), 2)
     lines["pore"] = pores.ravel()
-    return lines.tube(scalars="size", absolute=True, n_sides=SIDES)
+    return lines.tube(scalars="size", absolute=True, n_sides=sides)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 
-from geofit.data.errors import Cancelled
+from geofit.data.errors import Cancelled, InputError
 from geofit.gui.dialogs.rock_volume import RockVolumeDialog
 from geofit.gui.view3d.pore_scene import CONNECTED
 from geofit.project.pore_view import pore_view, read_grey
@@ -237,3 +237,40 @@ def test_a_stated_voxel_is_taken_from_the_header(tmp_path):
     volume = read_grey(tmp_path / "a.mha")
     assert volume.voxel == pytest.approx((2e-6, 1e-6, 1e-6))
     assert volume.values.shape == (4, 5, 6)
+
+
+def test_a_large_volume_is_worked_through_in_slabs_without_a_surface(qtbot, dialog, tmp_path, monkeypatch, here):
+    monkeypatch.setattr("geofit.project.pore_view.LARGE", 1000)
+    monkeypatch.setattr("geofit.pores.slabs.VOXELS", 2000)
+    monkeypatch.setattr("geofit.gui.view3d.pore_scene.MANY", 1)
+    found(qtbot, dialog, tmp_path / "rock.npy")
+    monkeypatch.undo()
+    whole = pore_view(chambers(), 0, 0, VOXEL)
+    view = dialog.view
+    assert dialog.scene.shown == ("pores", "throats")
+    np.testing.assert_array_equal(view.network.pores.centre, whole.network.pores.centre)
+    np.testing.assert_array_equal(view.network.throats.conductance, whole.network.throats.conductance)
+    assert (view.porosity, view.connected) == pytest.approx((whole.porosity, whole.connected))
+    assert view.permeability.square_metres == whole.permeability.square_metres
+    assert view.axes.tolist() == whole.axes.tolist()
+    assert not dialog.surface.isEnabled()
+
+
+@pytest.mark.parametrize("stage", ["distance", "basins", "merging", "throats", "permeability"])
+def test_every_stage_of_a_large_volume_can_be_stopped(stage, tmp_path, monkeypatch):
+    monkeypatch.setattr("geofit.project.pore_view.LARGE", 1000)
+    np.save(tmp_path / "rock.npy", chambers())
+    seen = []
+
+    def listen(name, fraction):
+        seen.append(fraction)
+        return name != stage
+
+    with pytest.raises(Cancelled):
+        pore_view(tmp_path / "rock.npy", 0, 0, VOXEL, progress=listen)
+    assert seen == sorted(seen)
+
+
+def test_a_file_that_went_between_opening_and_finding_is_an_error_in_words(tmp_path):
+    with pytest.raises(InputError, match="Copy or export it again"):
+        pore_view(tmp_path / "gone.npy", 0, 0, VOXEL)

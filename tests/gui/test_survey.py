@@ -12,6 +12,7 @@ from PySide6.QtGui import QDropEvent
 
 from geofit.data.errors import Cancelled
 from geofit.gui.dialogs.survey import SurveyDialog
+from geofit.gui.lengths import show_lengths_in
 from geofit.project.cave_run import measure_passages, read_survey
 from geofit.project.cave_view import shot_states, wall_rings
 
@@ -119,6 +120,28 @@ def test_tables_and_scene_show_what_the_library_finds(qtbot, dialog, loops, here
     dialog.shows["body"].setChecked(False)
     dialog.shows["walls"].setChecked(False)
     assert dialog.scene.shown == ("line", "stations")
+
+
+@pytest.fixture
+def feet():
+    show_lengths_in("ft")
+    yield
+    show_lengths_in("m")
+
+
+def test_the_window_in_feet(qtbot, feet, dialog, tmp_path, here):
+    path = tmp_path / "line.svx"
+    path.write_text("*begin line\n*fix a 0 0 100\n*data normal from to tape compass clino\na b 20 90 0\n*end line\n")
+    dialog.radius.setValue(3.28)
+    assert dialog.radius.suffix() == " ft"
+    opened(qtbot, dialog, path)
+    walls = np.array([wall.distance for wall in dialog.run.body.sections.filled])
+    np.testing.assert_allclose(walls, 3.28 * 0.3048)
+    figures = dict(rows(dialog.tables["figures"]))
+    assert figures["surveyed length, ft"] == "65.6"
+    assert float(figures["spacing of the triangles, ft"]) == pytest.approx(dialog.run.spacing / 0.3048, rel=1e-2)
+    distances = [float(row[2]) for row in rows(dialog.tables["walls"])]
+    assert distances == [3.28] * len(walls)
 
 
 def test_a_chosen_loop_is_drawn_along_its_stations(qtbot, dialog, loops, here):

@@ -13,7 +13,7 @@ from geofit.data.languages import EN
 from geofit.io.centreline import read_centreline
 from geofit.io.survex import read_survex
 from geofit.project.cave_report import write_cave_report
-from geofit.project.cave_run import run_cave
+from geofit.project.cave_run import measure_passages, write_passages
 from geofit.report import fonts
 from geofit.report.cave_chapter import CaveFindings, cave_chapter
 from geofit.report.cave_drawings import cave_sheet, draw_cave
@@ -60,7 +60,8 @@ def blunder(tmp_path):
         "*data passage station left right up down\na 1 1 1 1\nb 1 1 1 1\nc 1 1 1 1\ne 1 1 1 1\nf 1 1 1 1\n*end loop\n",
         encoding="utf-8",
     )
-    return run_cave(read_survex(path), tmp_path / "o", horizons={"T2": Level(100.5), "T1": Level(99.5)})
+    run = measure_passages(read_survex(path), horizons={"T2": Level(100.5), "T1": Level(99.5)})
+    return write_passages(run, tmp_path / "o")
 
 
 def test_loops_are_listed_with_their_misclosure_and_the_one_with_a_blunder_is_named(blunder):
@@ -95,11 +96,11 @@ def test_figures_of_volume_strata_and_missing_walls_are_those_of_the_run(blunder
 
 def test_a_line_without_a_loop_and_one_of_coordinates_say_that_nothing_checks_them(tmp_path):
     (tmp_path / "line.svx").write_text("*data normal from to tape compass clino\na b 10 90 0\nb c 10 45 0\n", "utf-8")
-    run = run_cave(read_survex(tmp_path / "line.svx"), tmp_path / "o", radius=1)
+    run = write_passages(measure_passages(read_survex(tmp_path / "line.svx"), radius=1), tmp_path / "o")
     assert "nothing checks its shots" in text_of(cave_chapter(found(run), EN))
     rows = "".join(f"T,{n},{20 * n},0,100,2\n" for n in range(4))
     (tmp_path / "tube.csv").write_text("line,station,x,y,z,radius\n" + rows, "utf-8")
-    run = run_cave(read_centreline(tmp_path / "tube.csv"), tmp_path / "o")
+    run = write_passages(measure_passages(read_centreline(tmp_path / "tube.csv")), tmp_path / "o")
     text = text_of(cave_chapter(found(run), EN))
     assert "no loop checks them" in text
     assert "Every wall was measured" in text
@@ -112,7 +113,7 @@ def test_an_excavation_that_meets_a_passage_is_a_warning(tmp_path):
         return read_centreline(tmp_path / f"{name}.csv")
 
     for z, meets in ((100, True), (120, False)):
-        run = run_cave(line("T", 100), tmp_path / "o", excavation=line("G", z))
+        run = write_passages(measure_passages(line("T", 100), excavation=line("G", z)), tmp_path / "o")
         chapter = cave_chapter(found(run), EN)
         assert ("meets a passage" in text_of(chapter)) is meets
         assert table(chapter, "Planned excavation").rows[0][1].startswith("−" if meets else "16")
@@ -130,7 +131,7 @@ def test_drawings_are_to_scale_and_the_section_is_along_the_passage(tmp_path, az
         for n, s in enumerate(np.linspace(0, reach, 6))
     )
     (tmp_path / "tube.csv").write_text("line,station,x,y,z,radius\n" + rows, "utf-8")
-    run = run_cave(read_centreline(tmp_path / "tube.csv"), tmp_path / "o")
+    run = write_passages(measure_passages(read_centreline(tmp_path / "tube.csv")), tmp_path / "o")
     sheet = cave_sheet(run.triangles, run.adjusted.xyz)
     assert sheet.azimuth == pytest.approx(azimuth % 180, abs=1e-3)
     images = draw_cave(found(run), sheet, run.triangles)

@@ -1,0 +1,56 @@
+"""Swept sections: one a shot, as arrays, and their volumes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Sweeps", "swept_volumes"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Sweeps:
+    """One swept section a shot, as arrays for the compiled loops.
+
+    Parameters
+    ----------
+    origin, along, right, up : (k, 3) array
+        Start of each shot and its orthonormal frame.
+    length : (k,) array
+        Lengths, metres.
+    walls : (k, 2, 4) array
+        Semi-axes left, right, up and down across the shot at start and end, metres.
+    cap : (k, 2) array
+        Semi-axis of the ellipsoid along the shot at start and end; 0 for a flat end.
+    branch : (k,) array of int
+        Branch of each shot: a chain of shots between junctions and ends.
+    """
+
+    origin: Floats
+    along: Floats
+    right: Floats
+    up: Floats
+    length: Floats
+    walls: Floats
+    cap: Floats
+    branch: Ints
+
+    @property
+    def volumes(self) -> Floats:
+        """Volume (k,) of each sweep without its caps, cubic metres."""
+        return swept_volumes(self.length, self.walls)
+
+
+def swept_volumes(length: Floats, walls: Floats) -> Floats:
+    """Return the volumes (k,) of sections that are linear between walls (k, 2, 4), exactly (Simpson's rule)."""
+    area = [_area(walls[:, 0]), _area(walls.mean(axis=1)), _area(walls[:, 1])]
+    return np.asarray(length * (area[0] + 4 * area[1] + area[2]) / 6)
+
+
+def _area(walls: Floats) -> Floats:
+    return np.asarray(np.pi / 4 * (walls[:, 0] + walls[:, 1]) * (walls[:, 2] + walls[:, 3]))
