@@ -181,7 +181,7 @@ class Bodies(QObject):
         self.showing.chosen = name
         self.showing.renew()
         verdict = result.verdict
-        text = message("gui.log-body-volume", "{name}: {volume}", name=name, volume=volume(result.mesh.volume))
+        text = message("gui.log-body-volume", "{name}: {volume}", name=name, volume=volume(result.volume))
         if verdict is not None:
             text = message(
                 "gui.log-body-fitted",
@@ -189,7 +189,7 @@ class Bodies(QObject):
                 name=name,
                 verdict=verdict.word,
                 data=verdict.data.text,
-                volume=volume(result.mesh.volume),
+                volume=volume(result.volume),
                 count=len(result.violations),
             )
         _LOG.info(text)

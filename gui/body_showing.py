@@ -155,7 +155,7 @@ class BodyShowing(QObject):
             accuracy, verdict = (None, None) if result is None else (result.accuracy, result.verdict)
             words = name
             if result is not None:
-                words = f"{name}: {volume(result.mesh.volume)}"
+                words = f"{name}: {volume(result.volume)}"
             if verdict is not None:
                 words += "\n" + translated(verdict.text)
             if self.stale(record):

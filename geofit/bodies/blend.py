@@ -81,11 +81,11 @@ class Blend:
             np.array([part.half for part in self.parts]),
             np.array([rbf.reach for rbf in own]),
             np.cumsum([0, *(len(rbf.centres) for rbf in own)]).astype(np.int64),
-            np.concatenate([rbf.centres for rbf in own]),
+            np.ascontiguousarray(np.concatenate([rbf.centres for rbf in own]).T),
             np.concatenate([rbf.weights for rbf in own]),
             np.cumsum([0, *(len(rbf.dipoles) for rbf in own)]).astype(np.int64),
-            np.concatenate([rbf.dipoles for rbf in own]),
-            np.concatenate([rbf.moments for rbf in own]),
+            np.ascontiguousarray(np.concatenate([rbf.dipoles for rbf in own]).T),
+            np.ascontiguousarray(np.concatenate([rbf.moments for rbf in own]).T),
         )
 
 

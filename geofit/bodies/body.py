@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +15,6 @@ from geofit.bodies.fitted import Fitted
 from geofit.bodies.implicit_body import ImplicitBody
 from geofit.bodies.region import Region
 from geofit.bodies.settings import BodySettings
-from geofit.implicit.mesh import TriangleMesh
 
 if TYPE_CHECKING:
     from geofit.bodies.simulate import BodyVolumes
@@ -111,12 +109,12 @@ class BodyFit(ImplicitBody):
         """Corners (3,) of a box around the body about the local origin, somewhat larger than it."""
         return self.fitted.survey.lower, self.fitted.survey.upper
 
-    @cached_property
-    def overview(self) -> TriangleMesh:
-        """Closed triangles about the local origin, made once: cells of a third of the distance between holes."""
+    @property
+    def overview_spacing(self) -> float:
+        """Edge of the overview's cells, metres: a third of the distance between holes."""
         lower, upper = self.extent
         longest = float((upper - lower).max())
-        return self.local_mesh(longest / np.clip(BETWEEN_HOLES * longest / self.region.spacing, *OVERVIEW))
+        return float(longest / np.clip(BETWEEN_HOLES * longest / self.region.spacing, *OVERVIEW))
 
     def volumes(self, scheduler: str = "local", workers: int | None = 1) -> BodyVolumes:
         """Return P10, P50 and P90 of the volume by conditional simulation.

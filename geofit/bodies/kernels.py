@@ -58,38 +58,59 @@ def _cubes(x: Floats, c: Floats, w: Floats, out: Floats) -> None:
 
 
 @njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
+def _value_at(
+    p: Floats, c: Floats, w: Floats, own: tuple[int, int], g: Floats, v: Floats, turned: tuple[int, int], reach: float
+) -> float:
+    """Return the sum at p (3,) of the kernels ``own[0]`` to ``own[1]`` and the gradients ``turned[0]`` to [1]."""
+    px, py, pz = p[0], p[1], p[2]
+    total = 0.0
+    for j in range(own[0], own[1]):
+        dx, dy, dz = px - c[0, j], py - c[1, j], pz - c[2, j]
+        total += w[j] * _radial(dx * dx + dy * dy + dz * dz, reach)[0]
+    for j in range(turned[0], turned[1]):
+        dx, dy, dz = px - g[0, j], py - g[1, j], pz - g[2, j]
+        first = _radial(dx * dx + dy * dy + dz * dz, reach)[1]
+        total -= first * (v[0, j] * dx + v[1, j] * dy + v[2, j] * dz)
+    return total
+
+
+@njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
+def _gradient_at(
+    p: Floats, c: Floats, w: Floats, own: tuple[int, int], g: Floats, v: Floats, turned: tuple[int, int], reach: float
+) -> tuple[float, float, float, float]:
+    """Return what :func:`_value_at` returns, and its gradient."""
+    px, py, pz = p[0], p[1], p[2]
+    total, sx, sy, sz = 0.0, 0.0, 0.0, 0.0
+    for j in range(own[0], own[1]):
+        dx, dy, dz = px - c[0, j], py - c[1, j], pz - c[2, j]
+        k, first, _ = _radial(dx * dx + dy * dy + dz * dz, reach)
+        total += w[j] * k
+        f = w[j] * first
+        sx += f * dx
+        sy += f * dy
+        sz += f * dz
+    for j in range(turned[0], turned[1]):
+        dx, dy, dz = px - g[0, j], py - g[1, j], pz - g[2, j]
+        _, first, second = _radial(dx * dx + dy * dy + dz * dz, reach)
+        along = v[0, j] * dx + v[1, j] * dy + v[2, j] * dz
+        total -= first * along
+        f = second * along
+        sx -= first * v[0, j] + f * dx
+        sy -= first * v[1, j] + f * dy
+        sz -= first * v[2, j] + f * dz
+    return total, sx, sy, sz
+
+
+@njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
 def _values(x: Floats, c: Floats, w: Floats, g: Floats, v: Floats, reach: float, out: Floats) -> None:
     for i in range(x.shape[0]):
-        px, py, pz = x[i, 0], x[i, 1], x[i, 2]
-        total = 0.0
-        for j in range(c.shape[1]):
-            dx, dy, dz = px - c[0, j], py - c[1, j], pz - c[2, j]
-            total += w[j] * _radial(dx * dx + dy * dy + dz * dz, reach)[0]
-        for j in range(g.shape[1]):
-            dx, dy, dz = px - g[0, j], py - g[1, j], pz - g[2, j]
-            first = _radial(dx * dx + dy * dy + dz * dz, reach)[1]
-            total -= first * (v[0, j] * dx + v[1, j] * dy + v[2, j] * dz)
-        out[i] += total
+        out[i] += _value_at(x[i], c, w, (0, c.shape[1]), g, v, (0, g.shape[1]), reach)
 
 
 @njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
 def _gradients(x: Floats, c: Floats, w: Floats, g: Floats, v: Floats, reach: float, out: Floats) -> None:
     for i in range(x.shape[0]):
-        px, py, pz = x[i, 0], x[i, 1], x[i, 2]
-        sx, sy, sz = 0.0, 0.0, 0.0
-        for j in range(c.shape[1]):
-            dx, dy, dz = px - c[0, j], py - c[1, j], pz - c[2, j]
-            f = w[j] * _radial(dx * dx + dy * dy + dz * dz, reach)[1]
-            sx += f * dx
-            sy += f * dy
-            sz += f * dz
-        for j in range(g.shape[1]):
-            dx, dy, dz = px - g[0, j], py - g[1, j], pz - g[2, j]
-            _, first, second = _radial(dx * dx + dy * dy + dz * dz, reach)
-            f = second * (v[0, j] * dx + v[1, j] * dy + v[2, j] * dz)
-            sx -= first * v[0, j] + f * dx
-            sy -= first * v[1, j] + f * dy
-            sz -= first * v[2, j] + f * dz
+        _, sx, sy, sz = _gradient_at(x[i], c, w, (0, c.shape[1]), g, v, (0, g.shape[1]), reach)
         out[i, 0] += sx
         out[i, 1] += sy
         out[i, 2] += sz
@@ -102,8 +123,8 @@ def blend(
 ) -> None:  # fmt: skip
     """Add to ``out`` (n,), and to ``out_slopes`` (n, 3) if wanted, the blended corrections of overlapping boxes.
 
-    Box b has the kernels ``first[b]`` to ``first[b + 1]`` of c (m, 3) and w (m,), the gradients ``turned[b]`` to
-    ``turned[b + 1]`` of g (k, 3) and v (k, 3), and weights that are products of 1 - t^3 (10 - 15 t + 6 t^2).
+    Box b has the kernels ``first[b]`` to ``first[b + 1]`` of c (3, m) and w (m,), the gradients ``turned[b]`` to
+    ``turned[b + 1]`` of g (3, k) and v (3, k), and weights that are products of 1 - t^3 (10 - 15 t + 6 t^2).
     """
     one, slope = np.zeros(3), np.zeros(3)
     for i in range(x.shape[0]):
@@ -123,22 +144,11 @@ def blend(
                 one[a] = 1.0 - t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)
                 slope[a] = -30.0 * sign * t * t * (1.0 - t) * (1.0 - t) / half[b, a]
             weight = one[0] * one[1] * one[2]
-            value, sx, sy, sz = 0.0, 0.0, 0.0, 0.0
-            for j in range(first[b], first[b + 1]):
-                dx, dy, dz = x[i, 0] - c[j, 0], x[i, 1] - c[j, 1], x[i, 2] - c[j, 2]
-                k, f, _ = _radial(dx * dx + dy * dy + dz * dz, reach[b])
-                value += w[j] * k
-                sx += w[j] * f * dx
-                sy += w[j] * f * dy
-                sz += w[j] * f * dz
-            for j in range(turned[b], turned[b + 1]):
-                dx, dy, dz = x[i, 0] - g[j, 0], x[i, 1] - g[j, 1], x[i, 2] - g[j, 2]
-                _, f, s = _radial(dx * dx + dy * dy + dz * dz, reach[b])
-                along = v[j, 0] * dx + v[j, 1] * dy + v[j, 2] * dz
-                value -= f * along
-                sx -= f * v[j, 0] + s * along * dx
-                sy -= f * v[j, 1] + s * along * dy
-                sz -= f * v[j, 2] + s * along * dz
+            own, dipoles = (first[b], first[b + 1]), (turned[b], turned[b + 1])
+            if slopes:
+                value, sx, sy, sz = _gradient_at(x[i], c, w, own, g, v, dipoles, reach[b])
+            else:
+                value, sx, sy, sz = _value_at(x[i], c, w, own, g, v, dipoles, reach[b]), 0.0, 0.0, 0.0
             weights += weight
             total += weight * value
             if slopes:

@@ -19,6 +19,8 @@ Floats = NDArray[np.float64]
 
 #: Distance from the plane of their section, as a share of the outlines' size, up to which corners count as flat.
 FLAT = 0.01
+#: A line that turns by more than this has a corner, in degrees: a circle of twelve corners is still one.
+CORNER = 35.0
 #: Steps along the side of a square as large as the median outline; contacts on the smallest outline, at least.
 STEPS = 10
 FEWEST = 8
@@ -228,7 +230,7 @@ def _turned(rings: Sequence[Floats]) -> list[Floats]:
 
 
 def _resampled(rings: Sequence[Floats], step: float) -> Floats:
-    """Return places (n, 2) evenly along rings."""
+    """Return places (n, 2) evenly along rings, on arcs where the corners are those of a smooth line."""
     places = []
     for ring in rings:
         edge = np.roll(ring, -1, axis=0) - ring
@@ -237,8 +239,27 @@ def _resampled(rings: Sequence[Floats], step: float) -> Floats:
         count = max(FEWEST, int(np.ceil(ends[-1] / step)))
         at = (np.arange(count) + 0.5) * ends[-1] / count
         k = np.clip(np.searchsorted(ends, at, side="right") - 1, 0, len(ring) - 1)
-        places.append(ring[k] + ((at - ends[k]) / length[k])[:, None] * edge[k])
+        t = (at - ends[k]) / length[k]
+        right = np.column_stack([edge[:, 1], -edge[:, 0]])[k]
+        places.append(ring[k] + t[:, None] * edge[k] + (t * (1 - t) * _bulge(edge, length)[k])[:, None] * right)
     return np.concatenate(places)
+
+
+def _bulge(edge: Floats, length: Floats) -> Floats:
+    """Return the angle (k,), radians, between each edge (k, 2) and the arc that it cuts short, positive to the right.
+
+    Corners on a curve are joined by chords, which lie inside where it bulges: a body of such outlines would be too
+    small by their sagittas. A corner's turn is shared by its two edges as by two chords of one circle; of an edge's
+    ends the one with the smaller share counts, none where they differ in sign. A line that turns by more has a corner
+    of its own there, and its edges stay straight.
+    """
+    after = np.roll(edge, -1, axis=0)
+    turn = np.arctan2(edge[:, 0] * after[:, 1] - edge[:, 1] * after[:, 0], (edge * after).sum(axis=1))
+    turn[np.abs(turn) > np.radians(CORNER)] = 0.0
+    shared = length + np.roll(length, -1)
+    own, next_one = turn * length / shared, turn * np.roll(length, -1) / shared
+    former = np.roll(next_one, 1)
+    return np.where(own * former > 0, np.sign(own) * np.minimum(np.abs(own), np.abs(former)), 0.0)
 
 
 def _samples(plane: SectionPlane, on: Floats, step: float, margin: float | None) -> Floats:

@@ -36,8 +36,8 @@ SAMPLES = 200
 USUAL = 0.18
 TRUST = 30
 #: What makes the scale of outlines come true: a left-out section has a neighbour on each side, as far as two sections
-#: are apart; found on 120 planted bodies on 4 to 10 planes (docs/section_trials.md), judged on thirty others.
-BETWEEN = 1.25
+#: are apart; found on 220 planted bodies on 4 to 12 planes (docs/section_trials.md), judged on thirty others.
+BETWEEN = 1.35
 #: What makes the chance of lying inside come true on planted bodies of fifteen shapes (benchmarks/bodies.py; judged on
 #: other bodies, patterns of holes and noise): factors of the standard deviation in the body and off it - samples that
 #: are logged outside bound it, and only those that are active are in the covariance - and a shift, as fields of r^3
@@ -50,8 +50,6 @@ ON_SURFACE = math.erfc(SHIFT / math.sqrt(2)) / 2
 #: The factor with which 80 % of their volumes fall between P10 and P90. It is larger: what a field of one roughness
 #: misses of a shape is the same all over a body and does not cancel in its volume.
 SPREAD = 1.0
-#: The same factor between sections: what is missed there is missed along the whole gap. Found on twenty bodies.
-SPREAD_BETWEEN = 1.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,16 +85,26 @@ class BodyPosterior:
         towards what bodies of this distance between holes usually have: a few contacts say little about a scale. Of
         outlines whole sections are left out (:mod:`geofit.bodies.clusters`).
         """
+        own, count = self._left_out
+        return self._towards_usual(own, count) if self.sections is None else max(BETWEEN * own, 1e-9)
+
+    @cached_property
+    def _left_out(self) -> tuple[float, int]:
+        """The scale by what was left out, and how many contacts or sections were."""
         system, count = self.system, len(self.body.fitted.prepared.contacts)
         if self.body.fitted.system is None:
             count = min(count, CONTACTS)
         value = self.body.field.interpolant.value(system.points)
         weights = system.interpolate(value, self._slopes).weights
         if self.sections is not None:
-            return max(BETWEEN * block_scale(system, weights, count, self.sections), 1e-9)
+            names = np.unique(self.sections[:count])
+            return block_scale(system, weights, count, self.sections), int((names != "").sum())
         weights = weights[:count]
         precision = system.precision()[:count]
-        own = np.sqrt(np.mean(weights**2 / np.maximum(precision, 1e-300)))
+        return float(np.sqrt(np.mean(weights**2 / np.maximum(precision, 1e-300)))), count
+
+    def _towards_usual(self, own: float, count: int) -> float:
+        """Return a scale found on ``count`` contacts or sections, drawn towards the usual one."""
         spacing = self.body.region.spacing
         usual = USUAL * spacing / (spacing / self.body.field.frame.size) ** 1.5
         return float(np.exp((count * np.log(max(own, 1e-6 * usual)) + TRUST * np.log(usual)) / (count + TRUST)))
@@ -108,10 +116,17 @@ class BodyPosterior:
             return None
         return sections_of(self.body.data, self.body.field.frame.to_map(self.system.points))
 
-    @property
+    @cached_property
     def spread(self) -> float:
-        """The factor of the standard deviation with which volumes are drawn."""
-        return SPREAD if self.sections is None else SPREAD_BETWEEN
+        """The factor of the standard deviation with which volumes are drawn.
+
+        A volume needs the scale of a whole body, of which a dozen sections say little: volumes were off by anything
+        between a hundredth and ten times what the sections' own scale let expect. It is drawn towards the usual one,
+        as that of holes is (docs/section_trials.md).
+        """
+        if self.sections is None:
+            return SPREAD
+        return SPREAD * self._towards_usual(*self._left_out) / self.scale
 
     @property
     def _slopes(self) -> Floats:

@@ -40,7 +40,8 @@ class BodyVolumes:
     """Volumes of a body in m3.
 
     ``p10``, ``p50`` and ``p90``: 10, 50 and 90 % of the realizations are smaller. ``best`` is the volume of the fitted
-    body, ``mean`` and ``sd`` are over the realizations, ``values`` (n,) are their volumes.
+    body and ``error`` its numerical error (:attr:`geofit.BodyFit.size`), ``mean`` and ``sd`` are over the realizations,
+    ``values`` (n,) are their volumes.
     """
 
     p10: float
@@ -50,6 +51,7 @@ class BodyVolumes:
     mean: float
     sd: float
     values: Floats
+    error: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,47 +68,79 @@ class Draws:
 
 def simulate(body: BodyFit, where: Where = HERE) -> BodyVolumes:
     """Return the volumes of ``settings.realizations`` conditional simulations of a body."""
-    return volumes_of(body.overview.volume, draws(body, where).changes.sum(axis=0))
+    size = body.size
+    return volumes_of(size.volume, draws(body, where).changes.sum(axis=0), size.volume_error)
 
 
 def draws(body: BodyFit, where: Where = HERE) -> Draws:
     """Return ``settings.realizations`` conditional simulations of a body, kriged ``where`` it is said."""
     posterior = BodyPosterior(body)
     rng = np.random.default_rng(body.settings.seed)
-    nodes, spacing = _nodes(body)
-    value = body.field.value(nodes - body.origin)
+    nodes, counts, spacing = _nodes(body)
+    whole = body.field.value(nodes - body.origin)
     # The nearest ones only: no draw reaches the others, and each variance costs the square of the data.
-    order = np.argsort(np.abs(value), kind="stable")[:REACHED]
-    nodes, value = nodes[order], value[order]
-    deviation = posterior.spread * posterior.deviation(nodes)
-    near = np.abs(value) < FAR * deviation
+    nearest = np.argsort(np.abs(whole), kind="stable")[:REACHED]
+    deviation = posterior.spread * posterior.deviation(nodes[nearest])
+    width = np.maximum(np.linalg.norm(body.field.gradient(nodes[nearest] - body.origin), axis=1) * spacing, 1e-300)
+    # Also the cells that the surface crosses, however well it is known.
+    open_, crossed = np.abs(whole[nearest]) < FAR * deviation, np.abs(whole[nearest]) < width / 2
+    near = nearest[open_ | crossed]
+    value, width, deviation = whole[near], width[open_ | crossed], deviation[open_ | crossed]
     fitted = body.field.frame.to_fit(nodes[near])
-    change = changes(body, posterior, fitted[_first_knots(fitted, value[near], deviation[near])], fitted, rng, where)
-    slope = np.linalg.norm(body.field.gradient(nodes[near] - body.origin), axis=1)
-    width = np.maximum(slope * spacing, 1e-300)
-    base = np.clip(0.5 - value[near] / width, 0.0, 1.0)
+    knots = _first_knots(fitted, np.maximum(np.abs(value) - width / 2, 0.0), deviation)
+    change = changes(body, posterior, fitted[knots], fitted, rng, where)
+    supported = np.union1d(np.flatnonzero(whole < 0), _next_to_data(body, nodes))
+    base = np.clip(0.5 - value / width, 0.0, 1.0)
     # In place: with many cells the array is the largest one of a simulation.
     for k in range(change.shape[1]):
-        share = np.clip(0.5 - (value[near] + change[:, k]) / width, 0.0, 1.0)
+        drawn = value + change[:, k]
+        share = np.clip(0.5 - drawn / width, 0.0, 1.0)
+        share[_islands(whole, near, drawn, counts, supported)] = 0.0
         change[:, k] = spacing**3 * (share - base)
     return Draws(nodes[near], change)
 
 
-def volumes_of(best: float, change: Floats) -> BodyVolumes:
-    """Return the volumes of a fitted volume and of what each simulation (n,) adds to it, m3."""
-    # A draw that swells also adds islands far from data, so draws are larger than the fitted body on average. On
-    # planted bodies the fitted body is the one without bias: it stays the middle.
+def _next_to_data(body: BodyFit, nodes: Floats) -> NDArray[np.int64]:
+    """Return the nodes next to contacts and inside samples."""
+    from scipy.spatial import cKDTree
+
+    prepared = body.fitted.prepared
+    data = np.concatenate([prepared.contacts, prepared.inside]) - body.origin
+    return np.unique(np.asarray(cKDTree(nodes - body.origin).query(data, k=min(8, len(nodes)))[1]))
+
+
+def _islands(
+    whole: Floats, near: NDArray[np.int64], drawn: Floats, counts: NDArray[np.int64], supported: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Return which of the nodes near the surface a draw puts into a part that holds no ``supported`` node.
+
+    Such a part is met by no data, nor is it of the fitted body: a fit closes what no data support, too.
+    """
+    from scipy.ndimage import label
+
+    inside = whole < 0
+    inside[near] = drawn < 0
+    parts = label(inside.reshape(counts), np.ones((3, 3, 3)))[0].ravel()
+    kept = np.zeros(parts.max() + 1, bool)
+    kept[parts[supported]] = True
+    return np.asarray(inside[near] & ~kept[parts[near]])
+
+
+def volumes_of(best: float, change: Floats, error: float = 0.0) -> BodyVolumes:
+    """Return the volumes of a fitted volume with its numerical error and of what each simulation (n,) adds, m3."""
+    # A draw that swells gains more than one that shrinks loses, so draws are larger than the fitted body on average.
+    # On planted bodies the fitted body is the one without bias: it stays the middle.
     values = np.maximum(best + change, 0.0)
     middle = float(np.median(values))
     if middle > 0:
         values *= best / middle
     p10, p50, p90 = np.quantile(values, [0.1, 0.5, 0.9]).tolist()
     values.setflags(write=False)
-    return BodyVolumes(p10, p50, p90, best, float(values.mean()), float(values.std(ddof=1)), values)
+    return BodyVolumes(p10, p50, p90, best, float(values.mean()), float(values.std(ddof=1)), values, error)
 
 
-def _nodes(body: BodyFit) -> tuple[Floats, float]:
-    """Return raster nodes (n, 3) around the body in map coordinates, and their distance."""
+def _nodes(body: BodyFit) -> tuple[Floats, NDArray[np.int64], float]:
+    """Return raster nodes (n, 3) around the body in map coordinates, their counts along the axes, their distance."""
     lower, upper = body.extent
     margin = body.region.reach / 2
     lower, upper = np.maximum(lower - margin, body.field.lower), np.minimum(upper + margin, body.field.upper)
@@ -115,7 +149,7 @@ def _nodes(body: BodyFit) -> tuple[Floats, float]:
     axes = [lower[a] + (np.arange(counts[a]) + 0.5) * (upper - lower)[a] / counts[a] for a in range(3)]
     nodes = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     volume = float(((upper - lower) / counts).prod())
-    return nodes + body.origin, volume ** (1 / 3)
+    return nodes + body.origin, counts, volume ** (1 / 3)
 
 
 def _first_knots(fitted: Floats, value: Floats, deviation: Floats) -> NDArray[np.int64]:

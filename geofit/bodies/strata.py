@@ -26,7 +26,7 @@ Floats = NDArray[np.float64]
 class StratumVolume:
     """The part of a body in one stratum: ``upper`` and ``lower`` name the horizons that bound it, or are empty.
 
-    ``pieces`` counts its closed pieces; ``volumes.best`` is their volume.
+    ``pieces`` counts its closed pieces.
     """
 
     name: Message
@@ -55,7 +55,8 @@ def strata_table(
     Returns
     -------
     tuple of StratumVolume
-        Their ``volumes.best`` add up to the volume of the triangulated body, to rounding.
+        Their ``volumes.best`` add up to the volume of the body, to rounding: those of the pieces, all enlarged by the
+        factor of :attr:`BodyFit.size` over flat triangles.
 
     Raises
     ------
@@ -75,6 +76,7 @@ def strata_table(
         stratum = max((k for k, name in enumerate(order, 1) if piece.sides[name] == "below"), default=0)
         best[stratum] += piece.volume
         count[stratum] += 1
+    share, size = best / best.sum(), body.size
     drawn = draws(body)
     stratum_of = np.zeros(len(drawn.places), int)
     for k, name in enumerate(order, 1):
@@ -87,7 +89,7 @@ def strata_table(
         change = drawn.changes[stratum_of == k].sum(axis=0)
         if count[k]:
             upper, lower = order[k - 1] if k else "", order[k] if k < len(order) else ""
-            volumes = volumes_of(float(best[k]), change)
+            volumes = volumes_of(float(share[k]) * size.volume, change, float(share[k]) * size.volume_error)
             rows.append(StratumVolume(_label(upper, lower), upper, lower, int(count[k]), volumes))
     return tuple(rows)
 

@@ -168,6 +168,7 @@ def print_body(run: BodyRun) -> None:
         ("sigma, m", f"{metres(a.sigma)} {'<' if a.passed else '>='} {a.epsilon:g}"),
         ("largest residual, m", metres(a.max_abs)),
         ("volume, m3", f"{volumes.best:.6g}"),
+        ("its numerical error, m3", f"{volumes.error:.1f}"),
         ("volume P10, m3", f"{volumes.p10:.6g}"),
         ("volume P50, m3", f"{volumes.p50:.6g}"),
         ("volume P90, m3", f"{volumes.p90:.6g}"),

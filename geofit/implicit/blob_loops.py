@@ -52,6 +52,17 @@ def _cell(x: float, y: float, z: float, corner: Floats, side: float, counts: Int
     return int((i * counts[1] + j) * counts[2] + k)
 
 
+@njit(cache=True, inline="always")
+def _within(point: Floats, centre: Floats, a: Floats) -> tuple[float, float, float]:
+    """Return A (x - c): the place of a point (3,) in a ball's own coordinates."""
+    x, y, z = point[0] - centre[0], point[1] - centre[1], point[2] - centre[2]
+    return (
+        a[0, 0] * x + a[0, 1] * y + a[0, 2] * z,
+        a[1, 0] * x + a[1, 1] * y + a[1, 2] * z,
+        a[2, 0] * x + a[2, 1] * y + a[2, 2] * z,
+    )
+
+
 @njit(cache=True)
 def density(
     xyz: Floats, corner: Floats, side: float, counts: Ints, start: Ints, ball: Ints,
@@ -65,11 +76,7 @@ def density(
             continue
         for i in range(start[cell], start[cell + 1]):
             b = ball[i]
-            x, y, z = xyz[p, 0] - centres[b, 0], xyz[p, 1] - centres[b, 1], xyz[p, 2] - centres[b, 2]
-            a = shapes[b]
-            u = a[0, 0] * x + a[0, 1] * y + a[0, 2] * z
-            v = a[1, 0] * x + a[1, 1] * y + a[1, 2] * z
-            w = a[2, 0] * x + a[2, 1] * y + a[2, 2] * z
+            u, v, w = _within(xyz[p], centres[b], shapes[b])
             q = u * u + v * v + w * w
             if q < ends[b]:
                 total[p] += densities[b] * _f(code, q)
@@ -89,11 +96,8 @@ def density_gradient(
             continue
         for i in range(start[cell], start[cell + 1]):
             b = ball[i]
-            x, y, z = xyz[p, 0] - centres[b, 0], xyz[p, 1] - centres[b, 1], xyz[p, 2] - centres[b, 2]
             a = shapes[b]
-            u = a[0, 0] * x + a[0, 1] * y + a[0, 2] * z
-            v = a[1, 0] * x + a[1, 1] * y + a[1, 2] * z
-            w = a[2, 0] * x + a[2, 1] * y + a[2, 2] * z
+            u, v, w = _within(xyz[p], centres[b], a)
             q = u * u + v * v + w * w
             if q < ends[b]:
                 f = 2 * densities[b] * _df(code, q)

@@ -27,6 +27,10 @@ TETRAHEDRA = np.array([np.cumsum([[0, 0, 0], *np.eye(3, dtype=int)[list(p)]], ax
 OUTER, INNER = 0.091576213509771, 0.445948490915965
 OUTER_WEIGHT, INNER_WEIGHT = 0.109951743655322, 0.223381589678011
 
+#: Newton steps from the middle of an edge to the surface; share of an edge up to which a vertex lies on the surface.
+MOVES = 4
+ON = 1e-3
+
 
 @dataclass(frozen=True)
 class Extent:
@@ -167,9 +171,7 @@ def curved_extent(field: Field, mesh: TriangleMesh) -> Extent:
     Extent
         Error of order h^4; what flat triangles differ from it is the error that is given.
     """
-    a, b = mesh.vertices[mesh.edges[:, 0]], mesh.vertices[mesh.edges[:, 1]]
-    longest = float(np.linalg.norm(b - a, axis=1).max(initial=0))
-    middles = project_along_gradient(field, (a + b) / 2, reach=longest / 4)
+    middles = _curved_middles(field, mesh)
     keys = mesh.edges[:, 0] * len(mesh.vertices) + mesh.edges[:, 1]
     sides = np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=-1)
     index = np.searchsorted(keys, sides.min(axis=2) * len(mesh.vertices) + sides.max(axis=2))
@@ -187,3 +189,16 @@ def curved_extent(field: Field, mesh: TriangleMesh) -> Extent:
             volume += weight / 2 * float((x * normal).sum()) / 3
             area += weight / 2 * float(np.linalg.norm(normal, axis=1).sum())
     return Extent(volume, area, abs(volume - mesh.volume), abs(area - mesh.area))
+
+
+def _curved_middles(field: Field, mesh: TriangleMesh) -> Floats:
+    """Return the middles (n, 3) of the edges, moved onto the surface where their ends lie on it and it is near."""
+    a, b = mesh.vertices[mesh.edges[:, 0]], mesh.vertices[mesh.edges[:, 1]]
+    if not len(a):
+        return a
+    straight, length = (a + b) / 2, np.linalg.norm(b - a, axis=1)
+    middles = project_along_gradient(field, straight, reach=float(length.max()) / 4, steps=MOVES)
+    slope = np.linalg.norm(field.gradient(mesh.vertices), axis=1)
+    on = np.abs(field.value(mesh.vertices)) <= ON * float(length.mean()) * slope
+    curved = on[mesh.edges].all(axis=1) & (np.linalg.norm(middles - straight, axis=1) <= length / 4)
+    return np.where(curved[:, None], middles, straight)

@@ -99,6 +99,11 @@ class BodyResult:
         """Closed triangles about the local origin."""
         return self.body.overview
 
+    @property
+    def volume(self) -> float:
+        """The volume that is reported, m3: that of the fitted field, or of the triangles of others."""
+        return self.mesh.volume if self.volumes is None else self.volumes.best
+
 
 def make_body(
     source: BodySource,

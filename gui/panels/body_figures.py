@@ -88,13 +88,14 @@ class BodyFigures(QWidget):
         self.head.setText(self.tr("Volumes of {name}").format(name=name))
         self.strata.setVisible(result.fitted is not None and divide)
         rows: list[tuple[str, int, BodyVolumes | float]] = []
-        whole: BodyVolumes | float = result.mesh.volume if result.volumes is None else result.volumes
+        whole: BodyVolumes | float = result.volume if result.volumes is None else result.volumes
         rows.append((self.tr("whole body"), result.mesh.components, whole))
         rows += [(translated(part.name), part.pieces, part.volumes) for part in result.strata]
         figures = np.array([_figures(volumes) for _, _, volumes in rows])
         spread = self.tr("From conditional simulations that honour every contact and sample.")
+        numeric = self.tr("Of the curved surface: flat triangles enclose a little less.") if result.volumes else ""
         titles = (
-            (self.tr("Fitted, m³"), ""),
+            (self.tr("Fitted, m³"), numeric),
             ("P10, m³", spread),
             ("P50, m³", spread),
             ("P90, m³", spread),

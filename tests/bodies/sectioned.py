@@ -10,6 +10,8 @@ from bodies.shapes import KINDS, OTHERS, horn
 from geofit.bodies.fit import fit_body
 from geofit.bodies.outlines import Outline, from_outlines
 from geofit.bodies.posterior import BodyPosterior
+from geofit.implicit.lattice import Lattice
+from geofit.implicit.volume import extent_of_samples
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -26,19 +28,24 @@ LINE = np.linspace(-1, 1, 161)
 def left_out(name: str, count: int) -> tuple[float, float]:
     """Return the mean intersection over union with the middle planes left out in turn: of the body, of distances."""
     truth, axis = BODIES[name]
-    nodes = np.stack(np.meshgrid(LINE[::2], LINE[::2], LINE[::2], indexing="ij"), axis=-1).reshape(-1, 3)
-    along = nodes[truth(nodes) < 0, axis]
-    at = along.min() + (np.arange(count) + 0.5) / count * np.ptp(along)
+    at = planes_across(truth, axis, count)
     scores = []
     for left in (count // 2 - 1, count // 2, count // 2 + 1):
         outlines = [o for k, x in enumerate(at.tolist()) if k != left for o in _outlines(truth, axis, x, str(k))]
         body = fit_body(from_outlines(outlines))
-        places, inside = _plane(truth, axis, float(at[left]))
+        places, inside = plane_of(truth, axis, float(at[left]))
         got = (body.value(places * SIZE + ORIGIN) < 0).reshape(inside.shape)
-        near = [_distance(_plane(truth, axis, float(at[left + side]))[1]) for side in (-1, 1)]
-        scores.append((_overlap(inside, got), _overlap(inside, near[0] + near[1] < 0)))
+        near = [_distance(plane_of(truth, axis, float(at[left + side]))[1]) for side in (-1, 1)]
+        scores.append((overlap(inside, got), overlap(inside, near[0] + near[1] < 0)))
     ours, linear = np.mean(scores, axis=0).tolist()
     return ours, linear
+
+
+def planes_across(truth: Truth, axis: int, count: int) -> Floats:
+    """Return the places (count,) of planes across a body, as far apart from each other."""
+    nodes = np.stack(np.meshgrid(LINE[::2], LINE[::2], LINE[::2], indexing="ij"), axis=-1).reshape(-1, 3)
+    along = nodes[truth(nodes) < 0, axis]
+    return np.asarray(along.min() + (np.arange(count) + 0.5) / count * np.ptp(along))
 
 
 def sectioned_case(seed: int) -> tuple[str, Truth, list[Outline]]:
@@ -67,6 +74,18 @@ def surface_places(truth: Truth, seed: int, count: int) -> Floats:
     return found[:count]
 
 
+def volume_of(truth: Truth, cells: int = 96) -> float:
+    """Return the volume in m3 of a body in the box [-1, 1]^3, extrapolated from two rasters."""
+    found = []
+    for count in (cells, cells // 2):
+        line = np.linspace(-1, 1, count + 1)
+        plane = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
+        values = [truth(np.column_stack([np.full(len(plane), x), plane])) for x in line.tolist()]
+        lattice = Lattice(np.full(3, -1.0), 2 / count, (count + 1,) * 3)
+        found.append(extent_of_samples(np.reshape(values, lattice.shape), lattice).volume * SIZE**3)
+    return (4 * found[0] - found[1]) / 3
+
+
 def band_share(seed: int, count: int = 200) -> tuple[str, float]:
     """Return the kind of a body, and the share of its true surface in the 80 % band of the body of its outlines."""
     kind, truth, outlines = sectioned_case(seed)
@@ -76,7 +95,8 @@ def band_share(seed: int, count: int = 200) -> tuple[str, float]:
     return kind, float(((chance > 0.1) & (chance < 0.9)).mean())
 
 
-def _plane(truth: Truth, axis: int, at: float) -> tuple[Floats, Bools]:
+def plane_of(truth: Truth, axis: int, at: float) -> tuple[Floats, Bools]:
+    """Return the places (n, 3) of a raster on a plane, and which of them lie inside, (161, 161)."""
     plane = np.stack(np.meshgrid(LINE, LINE, indexing="ij"), axis=-1).reshape(-1, 2)
     places = np.insert(plane, axis, at, axis=1)
     return places, (truth(places) < 0).reshape(len(LINE), len(LINE))
@@ -85,7 +105,7 @@ def _plane(truth: Truth, axis: int, at: float) -> tuple[Floats, Bools]:
 def _outlines(truth: Truth, axis: int, at: float, name: str) -> list[Outline]:
     import contourpy
 
-    places, _ = _plane(truth, axis, at)
+    places, _ = plane_of(truth, axis, at)
     value = truth(places).reshape(len(LINE), len(LINE))
     lines = [line[:-1] for line in contourpy.contour_generator(LINE, LINE, value.T).lines(0.0) if len(line) > 8]
     return [Outline(name, np.insert(line, axis, at, axis=1) * SIZE + ORIGIN) for line in lines]
@@ -97,5 +117,6 @@ def _distance(inside: Bools) -> Floats:
     return np.asarray(distance_transform_edt(~inside) - distance_transform_edt(inside))
 
 
-def _overlap(a: Bools, b: Bools) -> float:
+def overlap(a: Bools, b: Bools) -> float:
+    """Return the intersection over the union of two shapes on one raster."""
     return float((a & b).sum() / (a | b).sum())

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from bodies.planted import ORIGIN, drilled, ellipsoid
-from bodies.sectioned import band_share, left_out
+from bodies.sectioned import band_share, left_out, sectioned_case, volume_of
 from geofit.bodies.clusters import sections_of
 from geofit.bodies.fit import fit_body
 from geofit.bodies.outlines import Outline, from_outlines, section_planes
@@ -60,6 +60,23 @@ def test_the_band_between_sections_holds_the_true_surface_of_varied_bodies() -> 
     shares = [band_share(seed)[1] for seed in range(200, 230)]
     assert 0.74 <= np.mean(shares) <= 0.86
     assert np.median(shares) > 0.74
+
+
+def test_p10_to_p90_holds_the_volume_of_most_bodies_of_outlines() -> None:
+    """Of ellipsoids, too, which the sections give to a thousandth: a band may be narrow and must not be nothing."""
+    held, widths, kinds = [], [], []
+    for seed in range(300, 330):
+        kind, truth, outlines = sectioned_case(seed)
+        volumes, volume = fit_body(from_outlines(outlines)).volumes(), volume_of(truth)
+        held.append(volumes.p10 < volume < volumes.p90)
+        widths.append((volumes.p90 - volumes.p10) / volume)
+        kinds.append(kind)
+    # 80 %, and two standard errors of a share.
+    assert 0.65 <= np.mean(held) <= 0.95
+    ellipsoids = np.array(["ellipsoid" in kind for kind in kinds])
+    assert np.mean(np.array(held)[ellipsoids]) >= 0.5
+    assert np.median(np.array(widths)[ellipsoids]) < 0.02
+    assert min(widths) > 1e-4
 
 
 def test_data_of_holes_are_no_sections() -> None:
@@ -127,3 +144,27 @@ def test_outlines_that_cannot_be_used() -> None:
         from_outlines([Outline("a", [[0, 0, 0], [10, 0, 0], [10, 0, 10], [0, 4, 10]])])
     with pytest.raises(PointsError, match="bounds no area"):
         from_outlines([Outline("a", [[0, 0, 0], [10, 0, 0], [20, 0, 0]])])
+
+
+@pytest.mark.parametrize("corners", [16, 24, 48])
+def test_contacts_of_a_drawn_ellipse_lie_on_it_and_not_on_its_chords(corners: int) -> None:
+    """An outline's chords cut an ellipse of 24 corners short by up to 0.9 %, and its volume with it."""
+    angle = 2 * np.pi * (np.arange(corners) + 0.3) / corners
+    ellipse = np.column_stack([np.zeros(corners), 60 * np.cos(angle), 40 * np.sin(angle)])
+    for outline in (ellipse, ellipse[::-1]):
+        contacts = from_outlines(
+            [Outline("a", outline), Outline("b", outline + np.array([30.0, 0.0, 0.0]))], 1.0
+        ).contacts
+        off = np.hypot(contacts[:, 1] / 60, contacts[:, 2] / 40) - 1
+        chord = 1 - np.cos(np.pi / corners)
+        assert np.abs(off).max() < 0.4 * chord
+        assert abs(off.mean()) < 0.1 * chord
+
+
+def test_corners_of_an_outline_stay_and_their_edges_are_straight() -> None:
+    square = np.array([[0, 0, 0], [40, 0, 0], [40, 0, 40], [20, 0, 41], [0, 0, 40]], float)
+    contacts = from_outlines([Outline("a", square), Outline("b", square + np.array([0.0, 30.0, 0.0]))], 1.0).contacts
+    x, z = contacts[:, 0], contacts[:, 2]
+    edges = np.stack([np.abs(x), np.abs(40 - x), np.abs(z), np.abs(40 + np.minimum(x, 40 - x) / 20 - z)])
+    assert edges.min(axis=0).max() < 0.3
+    assert edges[:3].min(axis=0)[z < 39].max() < 1e-9

@@ -349,7 +349,7 @@ def test_volumes_are_divided_by_the_horizons_that_reach_over_the_body(with_ore):
     with_ore.idle()
     result = with_ore.document.body("ORE")
     assert result.divided_by == ("T2-T1",)
-    assert sum(part.volumes.best for part in result.strata) == pytest.approx(result.mesh.volume, rel=1e-6)
+    assert sum(part.volumes.best for part in result.strata) == pytest.approx(result.volume, rel=1e-6)
     assert figures.volumes.rows.rowCount() == 3
     assert not figures.strata.isVisibleTo(figures)
 
