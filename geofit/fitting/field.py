@@ -183,7 +183,6 @@ def choose_covariance(
     trend: Floats | None = None,
     measured: Slopes | None = None,
     expected: float = 0.0,
-    rival: float = math.inf,
 ) -> list[tuple[FieldChoice, float]]:
     """Choose the covariance and the noise for data about their trend.
 
@@ -205,8 +204,6 @@ def choose_covariance(
         The trend that was removed, coefficients of 1, u, v; without it nothing holds the plane's slope.
     measured : Slopes, optional
         Measured slopes about the trend, weighted as if the noise were ``expected``, metres.
-    rival : float, optional
-        What another space reached: the search ends where it starts if it is far behind.
 
     Returns
     -------
@@ -244,7 +241,7 @@ def choose_covariance(
     log_rho = None if smoothing is None else math.log(smoothing)
     if known:
         free = 2 if log_rho is None else 0
-        found = []
+        found, rival = [], math.inf
         for guess in known:
             start = (math.log(guess.kappa), math.log(guess.rho), *guess.stretch)
             found.append(likelihood(guess.alpha).best([start], free, _AGAIN, _NEARBY, rival))

@@ -6,7 +6,6 @@ smooth: there the likelihood is greater, and so is the accuracy away from the da
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -45,6 +44,10 @@ class Level:
     value: float
 
 
+#: What finds the best field on a space, given fields to begin with.
+Search = Callable[[TensorSpace, Sequence[FieldChoice]], Level]
+
+
 def even_space(area: Rectangle, span: float, degree: int, most: int) -> TensorSpace:
     """Return a space of even spans no longer than ``span``, or as long as the cap of control points asks for."""
     while True:
@@ -63,16 +66,16 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldCho
     """Choose the regional field (:func:`geofit.fitting.field.choose_covariance`) and the even space that resolves it.
 
     Smoothness and direction are found on few control points, where a value of the likelihood costs little, range and
-    noise on the first level. Its spans are shortened while the likelihood gains by it, down to those that points in
-    groups resolve, and then lengthened while it gains by that.
+    noise on the first level. Its spans are lengthened while the likelihood gains by it; where it gains nothing, they
+    are shortened, down to those that points in groups resolve.
     """
     degree, noise = degree_for(len(data.plane)), relative_noise(data.accuracy)
     given = None if settings.smoothing == "auto" else float(settings.smoothing)
     limit = min(most, LAST_LEVEL)
     space, sketch = (even_space(data.area, EVEN, degree, size) for size in (min(FIRST_LEVEL, limit), SKETCH))
 
-    def on(space: TensorSpace, known: Sequence[FieldChoice], rival: float = math.inf) -> Level:
-        field, value = choose_covariance(space, data.plane, data.value, noise, given, known, data.trend, rival=rival)[0]
+    def on(space: TensorSpace, known: Sequence[FieldChoice]) -> Level:
+        field, value = choose_covariance(space, data.plane, data.value, noise, given, known, data.trend)[0]
         return Level(space, field, value)
 
     known: list[FieldChoice] = []
@@ -80,15 +83,13 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldCho
         some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
         found = choose_covariance(sketch, data.plane[some], data.value[some], noise[some], given, (), data.trend)
         known = [one for one, _ in found]
-    best = on(space, known)
-    for finer in _finer(data.area, degree, limit):
-        if finer.size < 1.3 * best.space.size:
-            continue
-        level = on(finer, [best.field], best.value)
-        if level.value > best.value - GAIN:
-            break
-        best = level
-    space, field = _lengthened(best, _coarser(data.area, degree, best.space.size), on)
+    first = on(space, known)
+    best = _lengthened(first, _coarser(data.area, degree, first.space.size), on)
+    if best is first:
+        best = _shortened(first, _finer(data.area, degree, limit), on)
+        if best is not first:
+            best = _lengthened(best, _coarser(data.area, degree, best.space.size), on)
+    space, field = best.space, best.field
     if data.slopes is not None and len(data.slopes):
         field = choose_covariance(
             space, data.plane, data.value, noise, given, [field], data.trend, data.slopes, field.noise
@@ -96,9 +97,7 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldCho
     return field, space
 
 
-def _lengthened(
-    best: Level, coarser: Iterable[TensorSpace], on: Callable[[TensorSpace, Sequence[FieldChoice]], Level]
-) -> tuple[TensorSpace, FieldChoice]:
+def _lengthened(best: Level, coarser: Iterable[TensorSpace], on: Search) -> Level:
     """Go to longer spans while the likelihood gains by it, which a truth smoother than any of the fields makes it do.
 
     What such spans cannot follow counts as noise: where the noise grows, it is the truth that they cut.
@@ -109,8 +108,19 @@ def _lengthened(
         if level.value > simplest.value or level.field.noise > LOUDER * best.field.noise:
             break
         simplest = level
-    chosen = simplest if simplest.value < best.value - GAIN else best
-    return chosen.space, chosen.field
+    return simplest if simplest.value < best.value - GAIN else best
+
+
+def _shortened(best: Level, finer: Iterable[TensorSpace], on: Search) -> Level:
+    """Go to shorter spans while the likelihood gains by it."""
+    for space in finer:
+        if space.size < 1.3 * best.space.size:
+            continue
+        level = on(space, [best.field])
+        if level.value > best.value - GAIN:
+            break
+        best = level
+    return best
 
 
 def _finer(area: Rectangle, degree: int, limit: int) -> Iterator[TensorSpace]:
