@@ -4,7 +4,8 @@ With the smoothing, the knots and the set of pulled points as they were chosen, 
 
 1. the regional field and the plane under it, of least (z - f)' W (z - f) + rho (f - plane)' E (f - plane);
 2. the core's correction, the least change of the control points with B (f + g) = z on the core's points;
-3. the pull on peripheral points outside the tolerance, a damped least change of the control points beside the core.
+3. the pull on peripheral points outside the tolerance, a damped least change of the control points beside the core;
+   points that were let go, because they contradict their neighbours, pull at nothing.
 
 Taking a group g out of step 1 is a rank update (Cook & Weisberg 1982, sec. 3.6): with the hat matrix H = C W, C the
 posterior covariance over noise^2, its left-out error is e = (I - H_gg)^-1 r_g, and every other residual grows by
@@ -37,6 +38,8 @@ Ints = NDArray[np.int64]
 _RIDGE = 1e-12
 #: Least eigenvalue of I - H_gg: below it, nothing but the group itself holds the field at the group.
 _HELD = 1e-9
+#: A point that keeps more than this share of its misfit was let go: a damped change leaves about a hundredth.
+LET_GO = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,13 +155,23 @@ def _corrections(given: Posterior, model: Model) -> tuple[Correction, ...]:
     if inside.any():
         steps.append(_correction(matrix, np.flatnonzero(inside), np.ones(matrix.shape[1]), _RIDGE, 0.0))
         residual = steps[-1].after(residual, [])
-    tolerance = problem.settings.interior_tolerance
-    far = (np.abs(residual[:, 0]) > tolerance) & ~inside
-    if net.rounds and far.any():
+    pulled = _pulled(given, model, residual[:, 0]) & ~inside
+    if net.rounds and pulled.any():
         # Rounds of damped changes leave about as much as one round with so many times less damping.
-        damping = DAMPING / net.rounds
-        steps.append(_correction(matrix, np.flatnonzero(far), free.astype(float), damping, RIM * tolerance))
+        damping, slack = DAMPING / net.rounds, RIM * problem.settings.interior_tolerance
+        steps.append(_correction(matrix, np.flatnonzero(pulled), free.astype(float), damping, slack))
     return tuple(steps)
+
+
+def _pulled(given: Posterior, model: Model, before: Floats) -> NDArray[np.bool_]:
+    """Return (n,) the points that were brought to the surface: beyond the limit before, no longer far off now.
+
+    Those that contradict their neighbours were let go, and pull at nothing.
+    """
+    net = model.net
+    over = np.column_stack([np.ones(len(given.plane)), given.plane]) @ given.trend
+    left = np.abs(given.value + over - net.space.matrix(given.plane) @ net.coefficients)
+    return (np.abs(before) > net.limit) & ((left <= net.limit) | (left < LET_GO * np.abs(before)))
 
 
 def _correction(matrix: csr_array, points: Ints, free: Floats, damping: float, slack: float) -> Correction:

@@ -167,6 +167,24 @@ def test_the_covariance_holds_the_plane_s_own_doubt():
     assert given.covariance_with(given.plane, some) == pytest.approx(expected, rel=1e-5, abs=1e-7 * expected.max())
 
 
+def test_points_that_were_let_go_pull_at_nothing_when_others_are_left_out():
+    rng = np.random.default_rng(5)
+    plan = rng.uniform(0, 1000, (80, 2))
+    plan[-1] = plan[-2] + (1.0, 0.5)
+    height = 30 * np.sin(plan[:, 0] / 150) + 20 * np.cos(plan[:, 1] / 120) + rng.normal(0, 2.0, 80)
+    height[-1] = height[-2] + 60
+    # No step of the local adjustment: it would move the surface to the worst of the two.
+    surface = fit_horizon(PointSet(np.column_stack([plan, height])), FitSettings(epsilon=50.0))
+    fit = linear(surface)
+    left = np.abs(surface.elevation(*plan.T) - height)
+    before = np.abs(fit.posterior.residual)
+    tolerance = surface.settings.interior_tolerance
+    (pull,) = fit.corrections
+    assert left[-2:].max() > 10
+    assert set(pull.points) == set(np.flatnonzero((before > tolerance) & (left < 1.1 * tolerance)))
+    assert not {78, 79} & set(pull.points)
+
+
 def test_a_hole_left_out_is_close_to_a_new_fit_without_it():
     """Knots, smoothing and pulls are chosen anew by the new fit: within a twentieth of the error's own sd."""
     surface, truth = small_surface(), small_truth()
