@@ -38,7 +38,7 @@ class BodyFigures(QWidget):
         self.count.setWordWrap(True)
         self.count.setAlignment(Qt.AlignmentFlag.AlignTop)
         self._found: tuple[Violation, ...] = ()
-        parts = QSplitter(Qt.Orientation.Horizontal)
+        self._parts = parts = QSplitter(Qt.Orientation.Horizontal)
         parts.setChildrenCollapsible(False)
         for heads, table in (((self.head, self.strata), self.volumes), ((self.count,), self.violations)):
             side = QWidget()
@@ -134,6 +134,10 @@ class BodyFigures(QWidget):
             "question": self.tr("Question", "BodyFigures"),
         }
         found, places = self._found, np.array([one.place for one in self._found]).reshape(-1, 3)
+        if self.violations.isHidden() == bool(found):
+            # A sentence needs less room than the table of volumes.
+            whole = sum(self._parts.sizes()) or 1000
+            self._parts.setSizes([whole * 3 // 5, whole * 2 // 5] if found else [whole * 4 // 5, whole // 5])
         self.violations.setVisible(bool(found))
         self.violations.show_columns(
             [
