@@ -38,8 +38,7 @@ published one (at another smallest pore).
 _PNEXTRACT = """
 ## pnextract
 
-Maximal balls by others, the program that made the published network; CPU time of its process, which reads the voxels
-from a file.
+Maximal balls by others; CPU time of its process, which reads the voxels from a file.
 """
 _TAIL = """
 Network permeability treats each throat as a straight duct. OpenPNM's permeability is that of snow2's network with its
@@ -83,12 +82,12 @@ def write_page(
         parts.append(
             _table(("volume", "s", "times geofit's", "GB", "pores", "throats", "K, mD"), _peer_rows(own, peers))
         )
+    parts.append(_TAIL)
     maximal = {name: peer["pnextract"] for name, peer in peers.items() if peer.get("pnextract")}
     if maximal:
         parts.append(_PNEXTRACT)
-        header = ("volume", "s", "times geofit's", "GB", "pores", "throats")
+        header = ("volume", "s", "times geofit's", "pores", "throats")
         parts.append(_table(header, [_pnextract_row(name, own[name], f) for name, f in maximal.items() if name in own]))
-    parts.append(_TAIL)
     compared = [_compared(name, own[name], truth) for name, truth in published.items() if name in own]
     if compared:
         parts.append(_BOLTZMANN)
@@ -119,7 +118,7 @@ def _own_row(name: str, f: Mapping[str, Any]) -> tuple[object, ...]:
 
 def _pnextract_row(name: str, own: Mapping[str, Any], f: Mapping[str, Any]) -> tuple[object, ...]:
     times = f["seconds"] / (own["seconds_network"] + own["seconds_balls"])
-    return name, f"{f['seconds']:.1f}", f"{times:.1f}", f"{f['memory_gb']:.2f}", f"{f['pores']:,}", f"{f['throats']:,}"
+    return name, f"{f['seconds']:.1f}", f"{times:.1f}", f"{f['pores']:,}", f"{f['throats']:,}"
 
 
 def _compared(name: str, f: Mapping[str, Any], published: tuple[float, ...]) -> tuple[str, ...]:

@@ -51,7 +51,7 @@ ElementDataFile = rock.raw
             int((Path(folder) / f"rock_{table}1.dat").read_text().split(maxsplit=1)[0]) for table in ("node", "link")
         )
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return {"seconds": seconds, "memory_gb": after.ru_maxrss / 1e6, "pores": pores, "throats": throats}
+    return {"seconds": seconds, "pores": pores, "throats": throats}
 
 
 def permeability(net, shape, edge):
