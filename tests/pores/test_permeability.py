@@ -252,3 +252,15 @@ def test_the_middle_of_berea_against_lattice_boltzmann(rock):
     assert found == pytest.approx(truth, rel=0.15)
     for k in (solved, found):
         assert np.argsort(k).tolist() == np.argsort(truth).tolist()
+
+
+def test_networks_of_many_pores_have_the_flow_of_a_direct_solve(monkeypatch):
+    """Noise that parts into hundreds of pores: throats of very different widths."""
+    from scipy import ndimage
+
+    field = ndimage.gaussian_filter(np.random.default_rng(3).random((70, 70, 70)), 1.5)
+    network = pore_network(volume_of(field < np.quantile(field, 0.3)))
+    assert len(network.pores) > 500
+    direct = network_permeability(network).square_metres
+    monkeypatch.setattr("geofit.pores.permeability.MANY", 10)
+    assert network_permeability(network).square_metres == pytest.approx(direct, rel=1e-6)
