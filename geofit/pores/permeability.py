@@ -148,7 +148,7 @@ def _flow(network: PoreNetwork, conduits: NDArray[np.float64], inlets: NDArray[n
         (np.concatenate([g, g, -g, -g, h]), (np.concatenate([i, j, i, j, k]), np.concatenate([i, j, j, i, k]))),
         shape=(size, size),
     ).tocsc()
-    source = np.bincount(k, weights=h * low[ends], minlength=size)
+    source: NDArray[np.float64] = np.asarray(np.bincount(k, weights=h * low[ends], minlength=size), float)
     pressure = _pressure(matrix, source)
     leaving = high & active[pore]
     return float((inlets[leaving] * pressure[number[pore[leaving]]]).sum())
