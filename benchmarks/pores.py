@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import subprocess
 import sys
 import tempfile
@@ -19,10 +18,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pores_rocks import ROCKS, ROOT, folder, volume_of
 
-from geofit.io.volumes import read_volume
 from geofit.pores import (
-    RockVolume,
     connectivity,
     laplace_permeability,
     maximal_balls,
@@ -30,29 +28,10 @@ from geofit.pores import (
     pore_network,
 )
 
-ROOT = Path(__file__).resolve().parents[1]
-ROCKS = {
-    "berea_110": ("berea_110.raw.gz", 0, 3e-6),
-    "berea_200": ("berea_200.npz", True, 5.345e-6),
-    "ketton_256": ("ketton_256.zip", 0, 15.2e-6),
-    "berea_400": ("berea_400.zip", 255, 5.345e-6),
-}
-#: The middle 128 voxels of Berea 200³ along each axis.
-ROCKS["berea_128"] = ROCKS["berea_200"]
 #: Voxels of the largest volume on which Laplace's equation is solved too.
 LAPLACE = 200**3
 #: Permeability by lattice Boltzmann along the axes from the first, mD.
 PUBLISHED = {"berea_200": (1433.0,), "berea_128": (2370.0, 2126.0, 2435.0)}
-
-
-def folder() -> Path:
-    return Path(os.environ.get("GEOFIT_DATA", ROOT / ".." / "shared" / "data")) / "pores"
-
-
-def volume_of(name: str) -> RockVolume:
-    file, pore, voxel = ROCKS[name]
-    volume = read_volume(folder() / file, pore=pore, voxel=voxel)
-    return RockVolume(volume.pore[36:164, 36:164, 36:164], pore=True, voxel=voxel) if name == "berea_128" else volume
 
 
 def measure(name: str) -> dict[str, Any]:

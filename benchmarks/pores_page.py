@@ -35,6 +35,11 @@ of the union; 15 no seams of blocks; 16 volumes of 18³, not 40³; 17 a thousand
 Not met: 24, the network within 25 % on the face-centred pack; 26, whose mean radius of throats is 34 % above the
 published one (at another smallest pore).
 """
+_PNEXTRACT = """
+## pnextract
+
+Maximal balls by others; CPU time of its process, which reads the voxels from a file.
+"""
 _TAIL = """
 Network permeability treats each throat as a straight duct. OpenPNM's permeability is that of snow2's network with its
 model of pyramids and cuboids.
@@ -78,6 +83,11 @@ def write_page(
             _table(("volume", "s", "times geofit's", "GB", "pores", "throats", "K, mD"), _peer_rows(own, peers))
         )
     parts.append(_TAIL)
+    maximal = {name: peer["pnextract"] for name, peer in peers.items() if peer.get("pnextract")}
+    if maximal:
+        parts.append(_PNEXTRACT)
+        header = ("volume", "s", "times geofit's", "pores", "throats")
+        parts.append(_table(header, [_pnextract_row(name, own[name], f) for name, f in maximal.items() if name in own]))
     compared = [_compared(name, own[name], truth) for name, truth in published.items() if name in own]
     if compared:
         parts.append(_BOLTZMANN)
@@ -104,6 +114,11 @@ def _own_row(name: str, f: Mapping[str, Any]) -> tuple[object, ...]:
     k = " / ".join(f"{value:.0f}" for value in f["permeability"])
     solved = " / ".join(f"{value:.0f}" for value in f["laplace"]) if f["laplace"] else "–"
     return name, *counts, k, solved, f"{f['seconds_network']:.2f}", f"{f['seconds_balls']:.2f}", f"{f['memory_gb']:.2f}"
+
+
+def _pnextract_row(name: str, own: Mapping[str, Any], f: Mapping[str, Any]) -> tuple[object, ...]:
+    times = f["seconds"] / (own["seconds_network"] + own["seconds_balls"])
+    return name, f"{f['seconds']:.1f}", f"{times:.1f}", f"{f['pores']:,}", f"{f['throats']:,}"
 
 
 def _compared(name: str, f: Mapping[str, Any], published: tuple[float, ...]) -> tuple[str, ...]:

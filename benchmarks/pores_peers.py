@@ -1,14 +1,17 @@
-"""Peers of the pore network on the same voxels: PoreSpy's snow2, and OpenPNM's Stokes flow through its network.
+"""Peers of the pore network on the same voxels: pnextract, PoreSpy's snow2, and OpenPNM's Stokes flow through that.
 
 ``python benchmarks/pores_peers.py VOLUME.npy EDGE OUT.json`` is run by ``pores.py --peers PYTHON`` with the Python of
-an environment that has porespy and openpnm; geofit need not be there. A small volume comes first, to compile.
+an environment that has porespy, openpnm and pnextract (all on PyPI); geofit need not be there. A small volume comes
+first, to compile. pnextract is a program of its own; its time is CPU time, of reading and writing files too.
 """
 
 from __future__ import annotations
 
 import json
 import resource
+import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -22,6 +25,33 @@ def snow2(pore, edge):
 
     ps.settings.tqdm["disable"] = True
     return ps.networks.snow2(pore, voxel_size=edge, boundary_width=[3, 3, 3]).network
+
+
+def pnextract(pore, edge):
+    """Return CPU seconds, pores and throats of pnextract; None where it is not installed."""
+    program = Path(sys.executable).with_name("pnextract")
+    if not program.exists():
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        (~pore).astype(np.uint8).tofile(Path(folder) / "rock.raw")
+        head = f"""ObjectType = Image
+NDims = 3
+ElementType = MET_UCHAR
+ElementByteOrderMSB = False
+DimSize = {" ".join(map(str, pore.shape[::-1]))}
+ElementSize = {" ".join([str(1e6 * edge)] * 3)}
+Offset = 0 0 0
+ElementDataFile = rock.raw
+"""
+        (Path(folder) / "rock.mhd").write_text(head)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([program, "rock.mhd"], cwd=folder, check=True, capture_output=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        pores, throats = (
+            int((Path(folder) / f"rock_{table}1.dat").read_text().split(maxsplit=1)[0]) for table in ("node", "link")
+        )
+    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return {"seconds": seconds, "pores": pores, "throats": throats}
 
 
 def permeability(net, shape, edge):
@@ -67,6 +97,7 @@ def main() -> int:
     except Exception as error:  # what a peer raises is part of the result
         k, why = None, f"{type(error).__name__}: {error}"
     figures = {
+        "pnextract": pnextract(pore, edge),
         "seconds": took,
         "memory_gb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6,
         "pores": int(inner.sum()),

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from pores import ROOT, folder, volume_of
+from pores_rocks import ROOT, folder, volume_of
 
 from geofit.pores import network_permeability, pore_network
 from geofit.pores.extraction import DEFAULT_R_MIN, DEFAULT_TAU

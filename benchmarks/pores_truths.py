@@ -297,8 +297,8 @@ def truths(berea_110: RockVolume | None) -> list[Line]:
 
 
 if __name__ == "__main__":
-    from pores import folder
-    from pores import volume_of as rock
+    from pores_rocks import folder
+    from pores_rocks import volume_of as rock
 
     for line in truths(rock("berea_110") if folder().is_dir() else None):
         print(" | ".join(line))

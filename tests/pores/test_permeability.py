@@ -240,3 +240,27 @@ def test_kozeny_is_an_upper_bound_on_rock(rock):
     assert table.kozeny_ratio == pytest.approx(
         kozeny_ratio(table.before.connectivity.connected, table.after.connectivity.connected)
     )
+
+
+def test_the_middle_of_berea_against_lattice_boltzmann(rock):
+    """2370, 2126 and 2435 mD along the axes of the 128 voxels in the middle of the sample."""
+    whole = rock("berea_200")
+    middle = RockVolume(whole.pore[36:164, 36:164, 36:164], pore=True, voxel=whole.voxel)
+    truth = (2370.0, 2126.0, 2435.0)
+    solved, found = laplace_permeability(middle).millidarcy, network_permeability(pore_network(middle)).millidarcy
+    assert solved == pytest.approx(truth, rel=0.1)
+    assert found == pytest.approx(truth, rel=0.15)
+    for k in (solved, found):
+        assert np.argsort(k).tolist() == np.argsort(truth).tolist()
+
+
+def test_networks_of_many_pores_have_the_flow_of_a_direct_solve(monkeypatch):
+    """Noise that parts into hundreds of pores: throats of very different widths."""
+    from scipy import ndimage
+
+    field = ndimage.gaussian_filter(np.random.default_rng(3).random((70, 70, 70)), 1.5)
+    network = pore_network(volume_of(field < np.quantile(field, 0.3)))
+    assert len(network.pores) > 500
+    direct = network_permeability(network).square_metres
+    monkeypatch.setattr("geofit.pores.permeability.MANY", 10)
+    assert network_permeability(network).square_metres == pytest.approx(direct, rel=1e-6)
