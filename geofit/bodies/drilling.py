@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.bodies.planned import PlannedHole, hole_direction, predict_hole
-from geofit.bodies.simulate import draws
+from geofit.bodies.simulate import draws, volumes_of
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 
@@ -96,6 +96,11 @@ def suggest_body_holes(
     places = np.concatenate([np.repeat(lines, ALONG, axis=0), np.tile(depth, len(tube))[:, None]], axis=1) @ axes
     meets = (body.field.value(places).reshape(-1, ALONG) < 0).any(axis=1)
     tube, shown = tube[meets], np.concatenate([shown[meets], shown[~meets].sum(axis=0, keepdims=True)])
+    # In the measure of the volumes that are reported, whose middle is the fitted body.
+    change = drawn.changes.sum(axis=0)
+    spread = float(change.std())
+    if spread > 0:
+        shown *= float(volumes_of(body.size.volume, change).values.std()) / spread
     found = []
     for k, before, after in _greedy(shown, count):
         collar = np.append(low[:2] + (tube[k] + 0.5) * across, low[2]) @ axes + body.origin
