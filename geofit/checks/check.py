@@ -293,7 +293,7 @@ def _residual_checks(surface: FittedSurface, d: Floats, patch: Labels, loose: ND
     if not loose.any():
         return []
     if not loose.all():
-        d, patch = d[loose], patch[loose]
+        patch, d = patch[loose], d[loose]
 
     def places(rows: Ints) -> Floats:
         return np.asarray(surface.points.xyz[left_rows(loose, rows)] - surface.origin)

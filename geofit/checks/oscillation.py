@@ -72,9 +72,8 @@ def oscillation(
     given = int(active.sum())
     if given < FEWEST:
         return None
-    chosen = np.arange(given)
-    if given > MOST:
-        chosen = np.sort(np.random.default_rng(0).choice(given, MOST, replace=False))
+    many = given > MOST
+    chosen = np.sort(np.random.default_rng(0).choice(given, MOST, replace=False)) if many else np.arange(given)
     chosen = left_rows(active, chosen)
     points, projection = surface.points.xyz[chosen] - surface.origin, feet_of(chosen)
     feet, normals = projection.foot, _normals(surface, projection)

@@ -151,10 +151,11 @@ def _elevation_range(surface: FittedSurface, parts: Sequence[PatchLattice]) -> C
     points, _ = lattice_places(parts)
     if not len(points):
         points = np.concatenate([p.points.reshape(-1, 3) for p in parts])
-    z = surface.points.xyz[:, 2] - surface.origin[2]
-    beyond = np.maximum(z.min() - points[:, 2], points[:, 2] - z.max())
+    z = surface.points.xyz[:, 2]
+    low, high = z.min() - surface.origin[2], z.max() - surface.origin[2]
+    beyond = np.maximum(low - points[:, 2], points[:, 2] - high)
     worst = int(np.argmax(beyond))
-    value, limit = max(float(beyond[worst]), 0.0), RANGE_SHARE * float(np.ptp(z))
+    value, limit = max(float(beyond[worst]), 0.0), RANGE_SHARE * float(high - low)
     text = message("data.elevations-beyond-data", "elevations reach {value:.1f} m beyond the data's range", value=value)
     where = _named(points[[worst]] + surface.origin) if value > limit else ()
     return Check("elevation range", value <= limit, value, limit, "m", text, where)

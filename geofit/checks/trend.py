@@ -62,9 +62,8 @@ def trend(surface: FittedSurface, parts: Sequence[PatchLattice], active: Bools) 
     where, normal = lattice_places(parts)
     if not len(where):
         return None
-    chosen = np.arange(given)
-    if given > MOST:
-        chosen = np.sort(np.random.default_rng(0).choice(given, MOST, replace=False))
+    many = given > MOST
+    chosen = np.sort(np.random.default_rng(0).choice(given, MOST, replace=False)) if many else np.arange(given)
     points = surface.points.xyz[left_rows(active, chosen)] - surface.origin
     axes = np.eye(3) if surface.frame == "map" else _plane_axes(points, normal)
     local, there = points @ axes.T, where @ axes.T

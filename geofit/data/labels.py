@@ -55,7 +55,10 @@ class Labels:
 
     def __getitem__(self, index: slice | NDArray[np.integer] | NDArray[np.bool_]) -> Labels:
         """Return the labels of some of the points."""
-        return Labels(np.atleast_1d(self.codes[index]).copy(), self.table)
+        picked = np.atleast_1d(self.codes[index])
+        if len(self.table) == 1 and self.codes.strides == (0,):
+            return Labels.same(self.table[0], len(picked))
+        return Labels(picked.copy() if isinstance(index, slice) else picked, self.table)
 
     def word(self, index: int) -> str:
         """Return the word of one point."""

@@ -11,6 +11,7 @@ from truth import EASTING, NORTHING, hills
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.checks import check
 from geofit.data import long_arrays
+from geofit.data.labels import Labels
 from geofit.fitting import conflicts
 from geofit.fitting.conflicts import near_pairs
 
@@ -47,6 +48,20 @@ def test_a_point_takes_at_most_twice_the_memory_of_its_coordinates(small_blocks,
     settings = FitSettings(core=core, max_control_points=300)
     # The cells of the field and the lattices of the checks do not grow with the points.
     assert taken(MANY, settings) - taken(FEW, settings) <= 2 * 24 * (MANY - FEW)
+
+
+def test_one_word_for_all_points_stays_one_when_some_are_picked():
+    n = 1_000_000
+    labels, some = Labels.same("T2", n), np.arange(n) != 7
+    tracemalloc.start()
+    try:
+        picked = labels[some], labels[5:-5]
+        held = tracemalloc.get_traced_memory()[0]
+    finally:
+        tracemalloc.stop()
+    assert held < n / 100
+    assert [len(part) for part in picked] == [n - 1, n - 10]
+    assert {word for part in picked for word in part.words()[:10].tolist()} == {"T2"}
 
 
 @pytest.mark.parametrize("seed", range(4))
