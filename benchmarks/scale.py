@@ -325,7 +325,8 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
     say("""The folds of a cross-validation that need a fit (sections of a fold, groups of fewer than 30 points) go the
         same way with `--scheduler`; from Python so do the holes left out of a body (`leave_one_hole_out`) and its
         simulations (`BodyFit.volumes`). Errors are the same to the last bit, standard deviations and volumes to
-        rounding.""")
+        rounding. `geofit fit` keeps each fold that is ready: a run that is stopped, or loses its scheduler, goes on
+        with the other folds when it is started again.""")
     lines += ["## Tables", ""]
     text = f"""A CSV of {CSV_ROWS:,} rows, {csv["bytes"] / 1e6:.0f} MB: {csv["cpu"]:.2f} s at first, peak memory
         {csv["peak"]:.0f} MB ({(csv["peak"] - csv["before"]) * 1e6 / csv["bytes"]:.1f} bytes a byte above the start)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +45,7 @@ def examine(
     *,
     scheduler: str = "local",
     workers: int | None = 1,
+    folder: Path | None = None,
 ) -> PredictionResult:
     """Examine a fit away from its data.
 
@@ -56,6 +58,8 @@ def examine(
     scheduler, workers : str, int
         Where fits without a fold are made, see :func:`geofit.streaming.executors.run_tasks`; by default here.
         Errors are the same to the last bit, standard deviations to rounding.
+    folder : Path, optional
+        Where the results of these fits are kept: an examination that was stopped goes on with the other folds.
 
     Returns
     -------
@@ -98,7 +102,7 @@ def examine(
             )
 
         look = sections_by_refit if model.problem.parametrization.parametric else _examine
-        where = Where(scheduler, workers)
+        where = Where(scheduler, workers, folder)
         found = guarded(lambda: look(surface, model, progress, where), None, missing)
         return _nothing(notes[0]) if found is None else found
 

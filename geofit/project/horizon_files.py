@@ -17,6 +17,7 @@ from geofit.data.site import Section, Site
 from geofit.project.step_files import Signed, certified
 from geofit.report.result import HorizonResult
 from geofit.streaming.executors import HERE, Where
+from geofit.streaming.kept import clear_kept
 
 if TYPE_CHECKING:
     from geofit.checks.storage import Storage
@@ -109,9 +110,15 @@ def _written(
     from geofit.report.tables import write_residuals
 
     clock = _Clock(fit)
+    folds = stem.with_name(stem.name + "_folds")
     prediction = examine(
-        surface, lambda stage, share: progress(stage, 0.45 * share), scheduler=where.scheduler, workers=where.workers
+        surface,
+        lambda stage, share: progress(stage, 0.45 * share),
+        scheduler=where.scheduler,
+        workers=where.workers,
+        folder=folds,
     )
+    clear_kept(folds)
     clock.stop("examination")
     progress("STEP and read-back", 0.45)
     path = stem.with_name(stem.name + ".step")

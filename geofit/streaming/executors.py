@@ -22,6 +22,7 @@ from typing import Any, TypeVar
 from geofit.data.distribution import install_line
 from geofit.data.errors import MissingDependencyError, SchedulerError, SettingsError
 from geofit.data.messages import message
+from geofit.streaming.kept import keep_arrays, kept_arrays, kept_path
 
 __all__ = ["HERE", "WORKERS", "SchedulerError", "Where", "run_tasks"]
 
@@ -73,14 +74,31 @@ def run_tasks(
 
 @dataclass(frozen=True)
 class Where:
-    """Where tasks run: a scheduler and, of this machine, the number of its processes; see :func:`run_tasks`."""
+    """Where tasks run: a scheduler and, of this machine, the number of its processes; see :func:`run_tasks`.
+
+    In ``folder`` each result is kept as soon as it is ready, and one that is there is not computed again; results are
+    arrays, tuples of arrays or None then.
+    """
 
     scheduler: str = "local"
     workers: int | None = 1
+    folder: Path | None = None
 
     def run(self, work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[int, R]]:
         """Yield the place of each task and its result, as they get ready."""
-        return run_tasks(work, tasks, self.scheduler, self.workers)
+        if self.folder is None:
+            yield from run_tasks(work, tasks, self.scheduler, self.workers)
+            return
+        paths, left = [kept_path(self.folder, work, task) for task in tasks], []
+        for k, path in enumerate(paths):
+            known, result = kept_arrays(path)
+            if known:
+                yield k, result
+            else:
+                left.append(k)
+        for k, result in run_tasks(work, [tasks[k] for k in left], self.scheduler, self.workers):
+            keep_arrays(paths[left[k]], result)
+            yield left[k], result
 
 
 #: One after another, in this process.
@@ -197,7 +215,8 @@ def _lost(scheduler: str, ready: int, total: int) -> SchedulerError:
         message(
             "streaming.scheduler-lost",
             "The scheduler at {scheduler} or its workers are lost; {ready} of {total} tasks were ready. Start the same "
-            "command again: a cloud goes on with the other parts, horizons are fitted anew.",
+            "command again: a cloud goes on with the other parts, a cross-validation with the other folds; horizons "
+            "are fitted anew.",
             scheduler=scheduler,
             ready=ready,
             total=total,

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +16,10 @@ from geofit.data.errors import SchedulerError
 from geofit.prediction import refits
 from geofit.prediction.examine import examine
 from geofit.streaming.executors import Where
+from geofit.streaming.kept import clear_kept, keep_arrays
 
 
-@pytest.fixture(scope="module")
-def folded():
+def overturned():
     """Return the fit of an overturned fold along five sections."""
     t, parts = np.linspace(0, 1, 40), []
     for k, y in enumerate(np.linspace(0, 400, 5)):
@@ -29,13 +31,22 @@ def folded():
     return fit
 
 
-@pytest.fixture(scope="module")
-def sparse():
+def few():
     """Return the fit of so few points that each group is left out by a fit of its own."""
     rng = np.random.default_rng(4)
     xy = rng.uniform(0, 300, (14, 2))
     z = 20 * np.sin(xy[:, 0] / 90) + rng.normal(0, 0.1, len(xy))
     return fit_horizon(PointSet(np.column_stack([xy, z]), hole=[f"B{k}" for k in range(len(xy))]))
+
+
+@pytest.fixture(scope="module")
+def folded():
+    return overturned()
+
+
+@pytest.fixture(scope="module")
+def sparse():
+    return few()
 
 
 @pytest.fixture(scope="module")
@@ -98,3 +109,52 @@ def test_a_scheduler_that_is_not_there_ends_the_examination_with_an_error(folded
     monkeypatch.setattr("geofit.streaming.executors.PATIENCE", 1)
     with pytest.raises(SchedulerError):
         examine(folded, scheduler="tcp://127.0.0.1:9")
+
+
+#: A run that is killed when so many folds are kept.
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+sys.path.insert(0, {tests!r})
+import test_folds
+from geofit.prediction.examine import examine
+from geofit.streaming import executors
+keep = executors.keep_arrays
+def keep_some(path, result):
+    keep(path, result)
+    if len(list(path.parent.iterdir())) == {count}:
+        os.kill(os.getpid(), signal.SIGKILL)
+executors.keep_arrays = keep_some
+examine(test_folds.{made}(), folder=Path({folder!r}))
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="no kill on this system")
+@pytest.mark.parametrize(("made", "name", "count"), [("overturned", "folded", 2), ("few", "sparse", 9)])
+def test_a_killed_examination_goes_on_with_the_other_folds(request, tmp_path, monkeypatch, made, name, count):
+    surface, folder = request.getfixturevalue(name), tmp_path / "folds"
+    code = KILLED.format(tests=str(Path(__file__).parent), count=count, made=made, folder=str(folder))
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == -signal.SIGKILL
+    before = {path.name for path in folder.iterdir()}
+    assert len(before) == count
+    computed = []
+
+    def keep(path, result):
+        computed.append(path.name)
+        keep_arrays(path, result)
+
+    monkeypatch.setattr("geofit.streaming.executors.keep_arrays", keep)
+    assert_same(examine(surface, folder=folder), examine(surface))
+    # Each of the others once, and none of those that were ready.
+    assert len(computed) == len(set(computed)) > 0
+    assert before.isdisjoint(computed)
+    assert {path.name for path in folder.iterdir()} == before | set(computed)
+
+
+def test_a_kept_fold_that_was_cut_off_is_computed_again(folded, tmp_path):
+    whole = examine(folded, folder=tmp_path)
+    first = min(tmp_path.iterdir())
+    first.write_bytes(first.read_bytes()[:60])
+    assert_same(examine(folded, folder=tmp_path), whole)
+    clear_kept(tmp_path)
+    assert not tmp_path.exists()
