@@ -14,6 +14,8 @@ __all__ = ["BodyField", "Interpolant"]
 
 Floats = NDArray[np.float64]
 SIDES = ("west", "east", "south", "north", "bottom", "top")
+#: Rasters on a side of the box, of which each is finer about so many least values of the last, and its places a line.
+_ZOOMS, _LEAST, _FINER = 4, 8, 9
 
 
 class Interpolant(Protocol):
@@ -90,18 +92,28 @@ class BodyField:
         return gradient
 
     def reaches(self, count: int = 40) -> tuple[str, ...]:
-        """Return the sides of the box on which the body has places, looked for on a raster of ``count`` squared."""
-        found = []
-        for k, name in enumerate(SIDES):
-            axis = k // 2
-            along, across = [np.linspace(self.lower[a], self.upper[a], count) for a in range(3) if a != axis]
-            plane = np.insert(
-                np.stack(np.meshgrid(along, across, indexing="ij"), axis=-1).reshape(-1, 2),
-                axis, (self.upper if k % 2 else self.lower)[axis], axis=1,
-            )  # fmt: skip
-            if (self._raw(plane) < 0).any():
-                found.append(name)
-        return tuple(found)
+        """Return the sides of the box on which the body has places.
+
+        They are looked for on a raster of ``count`` squared, and around its least values on finer ones: a body that
+        only touches a side is cut there, too.
+        """
+        return tuple(name for k, name in enumerate(SIDES) if self._on_side(k // 2, k % 2, count))
+
+    def _on_side(self, axis: int, end: int, count: int) -> bool:
+        across = [a for a in range(3) if a != axis]
+        low, high = self.lower[across], self.upper[across]
+        places = _raster(np.linspace(low, high, count))
+        step = (high - low) / (count - 1)
+        for _ in range(_ZOOMS):
+            plane = np.insert(places, axis, (self.lower, self.upper)[end][axis], axis=1)
+            value = self._raw(plane)
+            if (value < 0).any():
+                return True
+            least = places[np.argsort(value, kind="stable")[:_LEAST]]
+            around = _raster(np.linspace(-step, step, _FINER))
+            places = np.clip((least[:, None] + around).reshape(-1, 2), low, high)
+            step = 2 * step / (_FINER - 1)
+        return False
 
     def _raw(self, xyz: Floats) -> Floats:
         return self.interpolant.value(xyz @ self.frame.matrix.T)
@@ -116,3 +128,8 @@ class BodyField:
                 normals.append(sign * np.eye(3)[k // 2])
         stacked = np.array(distances)
         return stacked.max(axis=0), np.array(normals)[stacked.argmax(axis=0)]
+
+
+def _raster(lines: Floats) -> Floats:
+    """Return the (n * n, 2) places of a raster with (n, 2) coordinates of its lines."""
+    return np.stack(np.meshgrid(*lines.T, indexing="ij"), axis=-1).reshape(-1, 2)

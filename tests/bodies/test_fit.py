@@ -10,7 +10,9 @@ import pytest
 from bodies.planted import ORIGIN, SIZE, Truth, drilled, ellipsoid, pair, torus
 from geofit.bodies.body import BodyFit
 from geofit.bodies.data import BodyData
+from geofit.bodies.field import BodyField
 from geofit.bodies.fit import fit_body
+from geofit.bodies.frame import BodyFrame
 from geofit.bodies.settings import BodySettings
 from geofit.data.errors import FitError, PointsError, SettingsError
 
@@ -152,3 +154,21 @@ def test_codes_with_arrays() -> None:
 def test_a_length_that_is_no_number_is_refused_by_name() -> None:
     with pytest.raises(PointsError, match="inside_length cannot be read as float64"):
         BodyData([[0.0, 0.0, 0.0]], [[1.0, 0.0, 0.0]], [[2.0, 0.0, 0.0]], inside_length=["deep"])
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_body_that_only_touches_a_side_is_found_between_the_places_of_the_raster(seed: int) -> None:
+    centre = np.array([*np.random.default_rng(seed).uniform(-80, 80, 2), 99.0])
+
+    class Ball:
+        def value(self, x: np.ndarray) -> np.ndarray:
+            return np.linalg.norm(x - centre, axis=1) - 1.01
+
+        def gradient(self, x: np.ndarray) -> np.ndarray:
+            return x - centre
+
+    frame = BodyFrame(np.zeros(3), np.eye(3))
+    field = BodyField(Ball(), frame, np.full(3, -100.0), np.full(3, 100.0))
+    assert field.reaches() == ("top",)
+    lower = BodyField(Ball(), frame, np.full(3, -100.0), np.full(3, 101.0))
+    assert lower.reaches() == ()
