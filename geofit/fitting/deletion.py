@@ -171,8 +171,7 @@ def _pulled(given: Posterior, model: Model, before: Floats) -> NDArray[np.bool_]
     net = model.net
     over = np.column_stack([np.ones(len(given.plane)), given.plane]) @ given.trend
     left = np.abs(given.value + over - net.space.matrix(given.plane) @ net.coefficients)
-    near = (left <= net.limit) | (left < LET_GO * np.abs(before))
-    return np.asarray((np.abs(before) > net.limit) & near)
+    return np.asarray((np.abs(before) > net.limit) & ((left <= net.limit) | (left < LET_GO * np.abs(before))))
 
 
 def _correction(matrix: csr_array, points: Ints, free: Floats, damping: float, slack: float) -> Correction:
