@@ -180,7 +180,7 @@ def test_08_table_and_view_choose_the_same_point(shown, qtbot):
 def test_09_the_badge_and_the_bands_say_what_the_check_says(shown):
     accuracy, text = fitted().accuracy, shown.panels.verdict.text
     assert str(text).startswith("PASS")
-    for figure in (f"{accuracy.sigma:.3f}", f"{accuracy.epsilon:g}"):
+    for figure in (f"{accuracy.sigma:.3g}", f"{accuracy.epsilon:g}"):
         assert figure in str(text)
     key = f"points:{NAME}"
     shown.view.layers.change(key, colour_by="deviation")
