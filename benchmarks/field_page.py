@@ -161,8 +161,9 @@ _TRIES = (
     (
         "kappa of 2.5 a spacing among the starts of the search",
         "the same lines: GM 0.942 to 0.937; at most 1.02 on 17 to 19; worst 1.27 the same; Copper Creek, base"
-        " of gd 1.07 to 0.99, GHv 1.02 to 1.01",
-        "yes",
+        " of gd 1.07 to 0.99, GHv 1.02 to 1.01; but ten folds over holes refitted: pqd 225 m to 246 m, gd 218 m to"
+        " 225 m, bx 161 m to 159 m, Weka Hills, top of Basement 20.0 m to 19.3 m",
+        "no",
     ),
     (
         "spans of a quarter of the spacing from the start, where 1,000 control points allow them",

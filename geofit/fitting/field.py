@@ -52,8 +52,8 @@ ENOUGH = 16
 _NARROW = 0.05
 #: How far the field's space reaches beyond the area, in units, and how fast its spans grow there.
 _BEYOND, _GROWTH = 1.5, 1.5
-#: Starts of the search: kappa per unit, that of the smoother fields, and log rho.
-_KAPPAS, _SMOOTHER, _LOG_RHOS = (0.1, 0.7, 2.5), (0.7,), (-10.0, -6.0, -2.0)
+#: Starts of the search: kappa per unit, and log rho.
+_KAPPAS, _LOG_RHOS = (0.1, 0.7), (-10.0, -6.0, -2.0)
 #: First steps from there: to the next start, whose value is known.
 _BETWEEN = (math.log(_KAPPAS[1] / _KAPPAS[0]), _LOG_RHOS[1] - _LOG_RHOS[0], 0.0, 0.0)
 #: Stretches that the search for a direction starts from.
@@ -277,7 +277,7 @@ def _search(likelihood: Callable[[int], Likelihood], degree: int, n: int, log_rh
     found: list[tuple[Optimum, Likelihood]] = []
     for alpha in alphas:
         judge = likelihood(alpha)
-        kappas = _KAPPAS if alpha == 2 else _SMOOTHER
+        kappas = _KAPPAS if alpha == 2 else _KAPPAS[-1:]
         starts = [(math.log(kappa), log, 0.0, 0.0) for kappa in kappas for log in logs]
         rival = found[0][0].value if found else math.inf
         found.append((judge.best(starts, free, _FIRST, _BETWEEN, rival), judge))
