@@ -1,4 +1,4 @@
-"""The real rock volumes of the benchmarks of pores, from GEOFIT_DATA or ../shared/data beside the checkout."""
+"""The real rock volumes that the pore benchmarks read, from GEOFIT_DATA or ../shared/data next to the checkout."""
 
 from __future__ import annotations
 

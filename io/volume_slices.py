@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -113,15 +114,9 @@ def open_volume(
             message("data.check-path", "Check the path."),
             file=str(path),
         )
-    try:
+    with _readable(path):
         values, stated = _voxels(path, shape, dtype, name)
         return SlicedVolume(values, pore=pore, voxel=stated if voxel is None else voxel)
-    except OSError as error:
-        raise InputError(
-            message("io.file-damaged-incomplete", "the file is damaged or incomplete ({error})", error=error),
-            message("io.copy-export-again", "Copy or export it again."),
-            file=str(path),
-        ) from None
 
 
 def sliceable(path: Path) -> bool:
@@ -137,8 +132,14 @@ def map_voxels(path: Path) -> Voxels:
     InputError
         If the file is missing or damaged, or its shape is unknown.
     """
-    try:
+    with _readable(path):
         return _voxels(path, None, None, None)[0]
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    try:
+        yield
     except OSError as error:
         raise InputError(
             message("io.file-damaged-incomplete", "the file is damaged or incomplete ({error})", error=error),

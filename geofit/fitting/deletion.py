@@ -4,8 +4,8 @@ With the smoothing, the knots and the set of pulled points as they were chosen, 
 
 1. the regional field and the plane under it, of least (z - f)' W (z - f) + rho (f - plane)' E (f - plane);
 2. the core's correction, the least change of the control points with B (f + g) = z on the core's points;
-3. the pull on peripheral points outside the tolerance, a damped least change of the control points beside the core;
-   points that were let go, because they contradict their neighbours, pull at nothing.
+3. the pull on peripheral points outside the tolerance, a damped least change of the control points outside the core;
+   points that were released because they contradict their neighbours exert no pull.
 
 Taking a group g out of step 1 is a rank update (Cook & Weisberg 1982, sec. 3.6): with the hat matrix H = C W, C the
 posterior covariance over noise^2, its left-out error is e = (I - H_gg)^-1 r_g, and every other residual grows by

@@ -1,7 +1,7 @@
 """The control net: from points on a parametrization to the coefficients of one tensor-product surface.
 
-Here stand what every fit needs (the net, the caps) and the approximation: all points, or those beside a core, whose
-net :mod:`geofit.fitting.core` makes.
+This module holds what every fit needs (the net, the caps) and the approximation of all points, or of those outside a
+core, whose net :mod:`geofit.fitting.core` makes.
 """
 
 from __future__ import annotations

@@ -38,9 +38,13 @@ def keep_arrays(path: Path, result: Any) -> None:
     ------
     InputError
         If the system refuses to write the file.
+    TypeError
+        If the result is anything else: it would be lost.
     """
+    many = (result,) if isinstance(result, np.ndarray) else () if result is None else result
+    if not isinstance(many, tuple) or not all(isinstance(one, np.ndarray) for one in many):
+        raise TypeError(f"an array, a tuple of arrays or None can be kept, not {type(result).__name__}")
     folder_for(path.parent)
-    many = result if isinstance(result, tuple) else ()
     arrays = {_ONE: result} if isinstance(result, np.ndarray) else {f"{k:03d}": one for k, one in enumerate(many)}
     with replacing(path) as part:
         np.savez(part, **arrays)

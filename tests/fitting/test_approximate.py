@@ -73,7 +73,7 @@ def test_borrowed_control_points_stay_bit_for_bit(columns):
 @pytest.mark.parametrize("core", [None, CORE])
 def test_every_point_comes_within_a_tolerance_that_can_be_held(core):
     space, plane = space_of(16, 16), scattered(60, seed=1)
-    # Three spans beside the core nothing is fixed by it; nearer to it some points may be out of reach.
+    # The core fixes nothing more than three spans away; nearer to it, some points may be out of reach.
     plane = plane[~((plane > (1.5, 0.5)) & (plane < (6.5, 7.5))).all(axis=1)]
     grid = np.stack(np.meshgrid(np.linspace(0, 8, 40), np.linspace(0, 8, 40)), axis=-1).reshape(-1, 2)
     start = np.linalg.lstsq(space.matrix(grid).toarray(), wave(grid), rcond=None)[0]

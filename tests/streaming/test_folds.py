@@ -158,3 +158,9 @@ def test_a_kept_fold_that_was_cut_off_is_computed_again(folded, tmp_path):
     assert_same(examine(folded, folder=tmp_path), whole)
     clear_kept(tmp_path)
     assert not tmp_path.exists()
+
+
+def test_a_result_that_could_not_be_kept_is_refused(tmp_path):
+    with pytest.raises(TypeError, match="not dict"):
+        keep_arrays(tmp_path / "one.fold.npz", {"a": np.zeros(2)})
+    assert not list(tmp_path.iterdir())
