@@ -16,7 +16,7 @@ from geofit.cad.read_back import attribute_check
 from geofit.cad.solid_shapes import volume_of
 from geofit.data.accuracy import Check
 from geofit.data.errors import StitchError
-from geofit.data.messages import message
+from geofit.data.messages import message, plural_message
 from geofit.implicit.mesh import TriangleMesh
 
 if TYPE_CHECKING:
@@ -121,7 +121,9 @@ def read_back_body(
             float(len(solids)),
             1.0,
             "1",
-            message("cad.solids-count", "{count} solids in the file", count=len(solids)),
+            plural_message(
+                "cad.solids-count", "{count} solid in the file", "{count} solids in the file", count=len(solids)
+            ),
         ),
         # A tessellated face has no surface, which the check of a B-rep would miss.
         Check(
