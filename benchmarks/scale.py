@@ -32,7 +32,7 @@ from truth import EASTING, NORTHING, hills  # noqa: E402
 NOISE, SIZE, CHUNK = 0.05, 2000.0, 100_000
 CSV_ROWS, HORIZONS, POINTS = 1_000_000, 200, 600
 #: Points whose distances are measured, and those of them that the dense search measures.
-DISTANCES, CHECKED = 200_000, 60
+DISTANCES, CHECKED = 1_000_000, 60
 Figures = dict[str, float]
 COMMANDS = (
     "geofit fit scan.laz --out results",

@@ -21,13 +21,14 @@ from geofit.geometry.elevation import plan_map
 from geofit.splines import bspline
 from geofit.splines.patch import Patch, Patches
 
-__all__ = ["Projection", "foot_points_over_plan"]
+__all__ = ["CONVEX", "Projection", "creases", "foot_points_over_plan"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-#: What h (1 + G) K may be: the Hessian is then far from singular, and Newton's method converges in a few steps.
+#: What h (1 + G) K, or distance times curvature, may be: the Hessian is then far from singular, and Newton's method
+#: converges in a few steps.
 CONVEX = 0.5
 #: Steps of Newton's method, and how short (metres) the last one is: it leaves an error near its square. What has not
 #: come to rest is searched for.
@@ -180,7 +181,7 @@ def _fields(patches: Patches) -> tuple[_Field, ...]:
 
 def _field(index: int, patch: Patch) -> _Field | None:
     plan, (p, q) = plan_map(patch), patch.degree
-    if plan is None or _creased(patch.knots_u, p) or _creased(patch.knots_v, q):
+    if plan is None or creases(patch.knots_u, p).any() or creases(patch.knots_v, q).any():
         return None
     u, v = bspline.greville(patch.knots_u, p)[:, None, None], bspline.greville(patch.knots_v, q)[:, None]
     expected = plan.start + u * plan.matrix[:, 0] + v * plan.matrix[:, 1]
@@ -199,10 +200,10 @@ def _field(index: int, patch: Patch) -> _Field | None:
     return _Field(index, patch.domain, plan.start, plan.matrix, inverse, cells, slope, bend)
 
 
-def _creased(knots: Floats, degree: int) -> bool:
-    """Whether the first derivative may jump at an inner knot."""
-    inner = np.unique(knots[degree + 1 : -degree - 1], return_counts=True)[1]
-    return bool((inner >= degree).any())
+def creases(knots: Floats, degree: int) -> Bools:
+    """Mark the spans at whose start the first derivative may jump."""
+    line, count = np.unique(knots[degree : -degree - 1], return_counts=True)
+    return np.asarray((count >= degree) & (line > line[0]))
 
 
 def _derivative(net: Floats, knots: Floats, degree: int, axis: int) -> Floats:

@@ -20,10 +20,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from geofit.data.threads import side_by_side
-from geofit.geometry.ball_tree import BallTree, neighbours_together
+from geofit.geometry.box_tree import BoxTree, neighbours_together
 from geofit.geometry.cells import Cells, Place, refine_foot_points, tabulate
 from geofit.geometry.elevation import plan_map
-from geofit.geometry.foot_points import Projection, foot_points_over_plan
+from geofit.geometry.foot_points import CONVEX, Projection, creases, foot_points_over_plan
 from geofit.splines.patch import Patch, Patches
 
 __all__ = ["COMPILED", "Projection", "Searchable", "project", "searchable"]
@@ -131,7 +131,11 @@ def _no_farther_than_below(patches: Sequence[Patch], cells: Cells, target: Float
 
 @dataclass(frozen=True, eq=False)
 class Searchable:
-    """Patches with a tree of places: their lattice rows and columns, half spacing (m) and curvature (1/m)."""
+    """Patches with a tree of places: their lattice rows and columns, half spacing (m) and curvature (1/m).
+
+    ``piece`` (cells,): the number of the smooth piece, between creases of a patch, to which a cell belongs. A point may
+    have two feet close to each other on both sides of a crease.
+    """
 
     cells: Cells
     tree: cKDTree
@@ -140,6 +144,7 @@ class Searchable:
     lattice: Floats
     spacing: Floats
     curvature: Floats
+    piece: Ints
     # Lattice coordinates of the cells: origin (2, cells) and steps a cell (2, cells).
     cell_origin: Floats
     cell_steps: Floats
@@ -179,19 +184,22 @@ class Searchable:
     def of_cells(self) -> tuple[Any, ...]:
         """The cells as compiled loops take them."""
         c = self.cells
-        return c.table, c.neighbour, c.noise, c.patch, self.cell_origin, self.cell_steps, c.centre, c.half
+        return (
+            c.table, c.neighbour, c.noise, c.patch, self.cell_origin, self.cell_steps, c.centre, c.half, self.piece,
+        )  # fmt: skip
 
     @cached_property
     def balls(self) -> tuple[Any, Any]:
-        """All places and a ball tree of them as compiled loops take them."""
+        """All places and a tree of boxes of them as compiled loops take them."""
         return self.some_places(np.arange(self.tree.n), 1.0)
 
     def some_places(self, rows: Ints, wider: float) -> tuple[Any, Any]:
-        """Return some places, each for so many times its spacing, and a ball tree of them."""
+        """Return some places, each for so many times its spacing, and a tree of boxes of them."""
         points, spacing, curvature = self.tree.data[rows], wider * self.spacing[rows], self.curvature[rows]
-        tree = BallTree.of(points, np.zeros(len(rows)), spacing, curvature)
+        tree = BoxTree.of(points, np.zeros(len(rows)), spacing, curvature)
         local, lattice = (np.ascontiguousarray(values[:, rows]) for values in (self.place.local, self.lattice))
-        return (points, self.place.cell[rows], local, self.patch[rows], lattice), tree.arrays
+        cell = self.place.cell[rows]
+        return (points, cell, local, self.piece[cell], lattice), tree.arrays
 
 
 def untrimmed_patches(patches: int) -> tuple[Any, ...]:
@@ -217,18 +225,50 @@ def _prepare(patches: Patches) -> Searchable:
     area = np.sum([p.area for p in parts], axis=0)
     size = np.abs(area).max()
     upwards = next((float(np.sign(c)) for c in (area[2], area[1], area[0]) if abs(c) > 1e-9 * size), 1.0)
+    lattice = np.concatenate([p.lattice for p in parts], axis=1)
+    piece = _pieces(patches)
+    rows, place = _both_sides(cells, place, piece)
     return Searchable(
         cells=cells,
-        tree=cKDTree(np.concatenate([p.points for p in parts])),
+        tree=cKDTree(np.concatenate([p.points for p in parts])[rows]),
         place=place,
         patch=cells.patch[place.cell],
-        lattice=np.concatenate([p.lattice for p in parts], axis=1),
-        spacing=np.concatenate([p.spacing for p in parts]),
-        curvature=np.concatenate([p.curvature for p in parts]),
+        lattice=lattice[:, rows],
+        spacing=np.concatenate([p.spacing for p in parts])[rows],
+        curvature=np.concatenate([p.curvature for p in parts])[rows],
+        piece=piece,
         cell_origin=np.concatenate([p.cell_origin for p in parts], axis=1),
         cell_steps=np.concatenate([p.cell_steps for p in parts], axis=1),
         upwards=upwards,
     )
+
+
+def _pieces(patches: Patches) -> Ints:
+    """Return the number of the smooth piece of each cell."""
+    found, count = [], 0
+    for patch in patches:
+        u, v = (
+            np.cumsum(creases(knots, p)) for knots, p in zip((patch.knots_u, patch.knots_v), patch.degree, strict=True)
+        )
+        found.append(count + (u[:, None] * (v[-1] + 1) + v).ravel())
+        count = found[-1][-1] + 1
+    return np.concatenate(found)
+
+
+def _both_sides(cells: Cells, place: Place, piece: Ints) -> tuple[Ints, Place]:
+    """Add the places on creases once more, as places of the cells on the lower side; also return which each is.
+
+    Walks from both sides of a crease lead to different feet. The added ones come last.
+    """
+    rows = np.arange(len(place.cell))
+    for axis in (0, 1):
+        behind = np.where(place.local[axis] == -1, cells.neighbour[2 * axis, place.cell], -1)
+        on_crease = np.flatnonzero((behind >= 0) & (piece[behind] != piece[place.cell]))
+        local = place.local[:, on_crease].copy()
+        local[axis] = 1.0
+        joined = np.concatenate([place.cell, behind[on_crease]]), np.concatenate([place.local, local], axis=1)
+        place, rows = Place(*joined), np.concatenate([rows, rows[on_crease]])
+    return rows, place
 
 
 @dataclass(frozen=True, eq=False)
@@ -370,43 +410,44 @@ class _Pairs:
     def settled(self, surface: Searchable, basin: _Basin, distance: Floats) -> Bools:
         """Which places are next to the start or the foot of a walk: they lead to the same foot.
 
-        Within the radius of curvature the squared distance is convex around the foot; beyond it two feet
-        may be close together, and only the very same place is left out.
+        Where the squared distance is not convex around the foot two feet may be close together, and only the very
+        same place is left out.
         """
-        patch, lattice = surface.patch[self.place], surface.lattice[:, self.place]
+        piece, lattice = surface.piece[surface.place.cell[self.place]], surface.lattice[:, self.place]
         walk = basin[self.point]
-        at_start = (patch == walk.patch) & (np.abs(lattice - walk.start) < 0.5).all(axis=0)
-        convex = distance[self.point] * surface.curvature[self.place] < 0.5
+        at_start = (piece == walk.piece) & (np.abs(lattice - walk.start) < 0.5).all(axis=0)
+        convex = distance[self.point] * surface.curvature[self.place] < CONVEX
         margin = np.where(convex, SAME_FOOT, 0.5)
-        at_foot = (patch == walk.foot_patch) & (np.abs(lattice - walk.foot).max(axis=0) <= margin)
+        at_foot = (piece == walk.foot_piece) & (np.abs(lattice - walk.foot).max(axis=0) <= margin)
         return np.asarray(at_start | at_foot)
 
 
 @dataclass(frozen=True, eq=False)
 class _Basin:
-    """What a walk has settled for each point: patch (-1: none) and lattice coordinates of start and foot."""
+    """What a walk has settled for each point: smooth piece (-1: none) and lattice coordinates of start and foot."""
 
-    patch: Ints
+    piece: Ints
     start: Floats
-    foot_patch: Ints
+    foot_piece: Ints
     foot: Floats
 
     def __getitem__(self, index: Ints) -> _Basin:
-        return _Basin(self.patch[index], self.start[:, index], self.foot_patch[index], self.foot[:, index])
+        return _Basin(self.piece[index], self.start[:, index], self.foot_piece[index], self.foot[:, index])
 
     def spread(self, index: Ints, count: int) -> _Basin:
         """Return the same for ``count`` points, of which ``index`` have walked."""
-        patch, start = np.full(count, -1), np.zeros((2, count))
-        foot_patch, foot = patch.copy(), start.copy()
-        patch[index], start[:, index] = self.patch, self.start
-        foot_patch[index], foot[:, index] = self.foot_patch, self.foot
-        return _Basin(patch, start, foot_patch, foot)
+        piece, start = np.full(count, -1), np.zeros((2, count))
+        foot_piece, foot = piece.copy(), start.copy()
+        piece[index], start[:, index] = self.piece, self.start
+        foot_piece[index], foot[:, index] = self.foot_piece, self.foot
+        return _Basin(piece, start, foot_piece, foot)
 
 
 def _basin(surface: Searchable, start: Ints, foot: Place) -> _Basin:
     cell = foot.cell
     lattice = surface.cell_origin[:, cell] + surface.cell_steps[:, cell] * (foot.local + 1) / 2
-    return _Basin(surface.patch[start], surface.lattice[:, start], surface.cells.patch[cell], lattice)
+    of_start = surface.piece[surface.place.cell[start]]
+    return _Basin(of_start, surface.lattice[:, start], surface.piece[cell], lattice)
 
 
 def _look(tree: cKDTree, target: Floats, count: int) -> tuple[Floats, Ints]:

@@ -1,6 +1,6 @@
 """Compiled: the search for the nearest of all feet, on a surface and along its trim loops, point by point.
 
-Balls of places (:mod:`geofit.geometry.ball_tree`) show which walks may lead to a nearer foot; the bound is that of
+Boxes of places (:mod:`geofit.geometry.box_tree`) show which walks may lead to a nearer foot; the bound is that of
 :mod:`geofit.geometry.projection`.
 """
 
@@ -13,8 +13,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from geofit.geometry.ball_tree import LEAF
+from geofit.geometry.box_tree import LEAF
 from geofit.geometry.foot_loops import foot, jet_at
+from geofit.geometry.foot_points import CONVEX
 
 __all__ = ["explore_tree", "rim_feet"]
 
@@ -27,41 +28,49 @@ SAME_FOOT, MOST_WALKS = 1.6, 24
 #: Steps of Newton's method along a piece of a loop, and the last one, of 0 to 1: it leaves an error near its square.
 NEWTON, REST = 60, 1e-7
 
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _from(rows: Floats, k: int, x: Floats) -> float:
-    """Return the distance of a point from what row k begins with."""
-    return math.sqrt((rows[k, 0] - x[0]) ** 2 + (rows[k, 1] - x[1]) ** 2 + (rows[k, 2] - x[2]) ** 2)
+#: For what is called very often with many arrays: handing these over takes longer than the call's work.
+inlined = njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _children(nodes: Floats, node: int, x: Floats, stack: Ints, far: Floats, top: int) -> int:
-    """Put both halves of a ball on the stack with the distances of their centres, the nearer one on top."""
+@inlined
+def _to_place(leaves: Floats, k: int, x: Floats) -> float:
+    """Return the square of the distance of a point from a place in a leaf."""
+    return float((leaves[k, 0] - x[0]) ** 2 + (leaves[k, 1] - x[1]) ** 2 + (leaves[k, 2] - x[2]) ** 2)
+
+
+@inlined
+def _to_box(nodes: Floats, node: int, x: Floats) -> float:
+    """Return the square of the distance of a point from a box, 0 within it."""
+    total = 0.0
+    for k in range(3):
+        off = max(nodes[node, k] - x[k], x[k] - nodes[node, k + 3], 0.0)
+        total += off * off
+    return total
+
+
+@inlined
+def _children(nodes: Floats, node: int, x: Floats, stack: Ints, off: Floats, top: int) -> int:
+    """Put both halves of a box on the stack with the squares of their distances, the nearer one on top."""
     left = 2 * node + 1
-    to_left, to_right = _from(nodes, left, x), _from(nodes, left + 1, x)
-    nearer = to_left <= to_right
-    stack[top], far[top] = (left + 1, to_right) if nearer else (left, to_left)
-    stack[top + 1], far[top + 1] = (left, to_left) if nearer else (left + 1, to_right)
+    to_left, to_right = _to_box(nodes, left, x), _to_box(nodes, left + 1, x)
+    nearer = 1 if to_left <= to_right else 0
+    stack[top + nearer], off[top + nearer] = left, to_left
+    stack[top + 1 - nearer], off[top + 1 - nearer] = left + 1, to_right
     return top + 2
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _near(order: Ints, nodes: Floats, leaves: Floats, x: Floats) -> int:
-    """Return a place near to a point: of each two balls' centres the nearer one leads on."""
-    node, inner = 0, len(nodes) // 2
-    while node < inner:
-        node = 2 * node + 1
-        if _from(nodes, node + 1, x) < _from(nodes, node, x):
-            node += 1
-    found, best = order[0], np.inf
-    for k in range(LEAF * (node - inner), LEAF * (node - inner + 1)):
-        far = _from(leaves, k, x)
-        if far < best:
-            best, found = far, order[k]
-    return int(found)
+@inlined
+def _nearest_in_leaf(leaves: Floats, first: int, x: Floats) -> int:
+    """Return the row of the place of a leaf that is nearest to a point."""
+    found, best = first, np.inf
+    for k in range(first, first + LEAF):
+        off = _to_place(leaves, k, x)
+        if off < best:
+            found, best = k, off
+    return found
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined
 def _enclosed(loops: Any, patch: int, u: float, v: float) -> bool:
     """Whether parameters of a patch lie inside its loops (even-odd), whose sides are listed by strips of v."""
     trimmed, domain, strips, listed, sides = loops
@@ -78,19 +87,19 @@ def _enclosed(loops: Any, patch: int, u: float, v: float) -> bool:
     return within
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _known(places: Any, one: int, patch: Ints, at: Floats, count: int, margin: float) -> bool:
+@inlined
+def _known(places: Any, one: int, piece: Ints, at: Floats, count: int, margin: float) -> bool:
     """Whether a place is the start of a walk, or next to the foot of one: it leads to the same foot."""
     own, a, b = places[3][one], places[4][0, one], places[4][1, one]
     for m in range(count):
-        if patch[m, 0] == own and max(abs(a - at[m, 0]), abs(b - at[m, 1])) < 0.5:
+        if piece[m, 0] == own and max(abs(a - at[m, 0]), abs(b - at[m, 1])) < 0.5:
             return True
-        if patch[m, 1] == own and max(abs(a - at[m, 2]), abs(b - at[m, 3])) <= margin:
+        if piece[m, 1] == own and max(abs(a - at[m, 2]), abs(b - at[m, 3])) <= margin:
             return True
     return False
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined
 def _walked(
     cells: Any,
     places: Any,
@@ -99,16 +108,16 @@ def _walked(
     i: int,
     x: Floats,
     found: Any,
-    patch: Ints,
+    piece: Ints,
     at: Floats,
     count: int,
     jet: Floats,
 ) -> None:
     """Walk from a place, note its basin, and keep its foot if it is nearer and inside the loops."""
-    table, neighbour, noise, patch_of, origin, steps, centre, half = cells
+    table, neighbour, noise, patch_of, origin, steps, centre, half, piece_of = cells
     apart, cell, local, done = found
     c, s, t, fine, far = foot(table, neighbour, noise, places[1][one], places[2][0, one], places[2][1, one], x, jet)
-    patch[count, 0], patch[count, 1] = places[3][one], patch_of[c]
+    piece[count, 0], piece[count, 1] = places[3][one], piece_of[c]
     at[count, 0], at[count, 1] = places[4][0, one], places[4][1, one]
     at[count, 2] = origin[0, c] + steps[0, c] * (s + 1) / 2
     at[count, 3] = origin[1, c] + steps[1, c] * (t + 1) / 2
@@ -120,57 +129,57 @@ def _walked(
 def explore_tree(cells: Any, places: Any, tree: Any, loops: Any, target: Floats, known: Bools, found: Any) -> None:
     """Find feet inside the loops that are nearer to (n, 3) points than what is found already.
 
-    ``cells``: table, neighbours, rounding error, patches, lattice origin and steps, centres and half widths of the
-    cells. ``places``: position, cell, local coordinates, patch, lattice coordinates. ``tree``: order, nodes and leaves
-    of their ball tree. ``loops``: which patches are trimmed, domains, where
-    the sides of each strip begin in the list, the list, the sides. ``found``: distance (inf: nothing yet), cell, local
+    ``cells``: table, neighbours, rounding error, patches, lattice origin and steps, centres, half widths and smooth
+    pieces of the cells. ``places``: position, cell, local coordinates, smooth piece, lattice coordinates. ``tree``:
+    order, nodes and leaves of a tree of boxes around them. ``loops``: which patches are trimmed, domains, where the
+    sides of each strip begin in the list, the list, the sides. ``found``: distance (inf: nothing yet), cell, local
     coordinates, converged, overwritten. ``known`` marks points whose cell and local coordinates are a foot that counts
     as walked to, though it may lie outside the loops.
     """
     order, nodes, leaves = tree
-    origin, steps, patch_of = cells[4], cells[5], cells[3]
+    origin, steps, piece_of = cells[4], cells[5], cells[8]
     apart, cell, local = found[0], found[1], found[2]
     inner = len(nodes) // 2
-    jet, stack, away = np.empty((7, 4)), np.empty(128, np.int64), np.empty(128)
-    patch, at = np.empty((MOST_WALKS + 2, 2), np.int64), np.empty((MOST_WALKS + 2, 4))
+    jet, stack, off = np.empty((7, 4)), np.empty(128, np.int64), np.empty(128)
+    piece, at = np.empty((MOST_WALKS + 2, 2), np.int64), np.empty((MOST_WALKS + 2, 4))
     for i in range(len(target)):
         x, count = target[i], 0
         if known[i]:
             c = cell[i]
-            patch[0, 0], patch[0, 1] = -1, patch_of[c]
+            piece[0, 0], piece[0, 1] = -1, piece_of[c]
             at[0, 2] = origin[0, c] + steps[0, c] * (local[0, i] + 1) / 2
             at[0, 3] = origin[1, c] + steps[1, c] * (local[1, i] + 1) / 2
             count = 1
-        else:
-            _walked(cells, places, loops, _near(order, nodes, leaves, x), i, x, found, patch, at, count, jet)
-            count = 1
         top = 1
-        stack[0], away[0] = 0, _from(nodes, 0, x)
+        stack[0], off[0] = 0, 0.0
         while top and count <= MOST_WALKS:
             top -= 1
             node, best = stack[top], apart[i]
-            off = max(away[top] - nodes[node, 3], 0.0)
-            if off * off > best * best + nodes[node, 4] ** 2 * (1 + best * nodes[node, 5]):
+            if off[top] > best * best + nodes[node, 6] ** 2 * (1 + best * nodes[node, 7]):
                 continue
             if node < inner:
-                top = _children(nodes, node, x, stack, away, top)
+                top = _children(nodes, node, x, stack, off, top)
                 continue
-            for k in range(LEAF * (node - inner), LEAF * (node - inner + 1)):
+            first = LEAF * (node - inner)
+            if not count:
+                one = order[_nearest_in_leaf(leaves, first, x)]
+                _walked(cells, places, loops, one, i, x, found, piece, at, count, jet)
+                count = 1
+            for k in range(first, first + LEAF):
                 best = apart[i]
-                far = _from(leaves, k, x)
-                if far * far > best * best + leaves[k, 3] ** 2 * (1 + best * leaves[k, 4]):
+                if _to_place(leaves, k, x) > best * best + leaves[k, 3] ** 2 * (1 + best * leaves[k, 4]):
                     continue
                 one = order[k]
                 # Within the radius of curvature the squared distance is convex around a foot.
-                margin = SAME_FOOT if best * leaves[k, 4] < 0.5 else 0.5
-                if not _known(places, one, patch, at, count, margin):
-                    _walked(cells, places, loops, one, i, x, found, patch, at, count, jet)
+                margin = SAME_FOOT if best * leaves[k, 4] < CONVEX else 0.5
+                if not _known(places, one, piece, at, count, margin):
+                    _walked(cells, places, loops, one, i, x, found, piece, at, count, jet)
                     count += 1
                     if count > MOST_WALKS:
                         break
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined
 def _on_piece(
     rim: Any, cells: Any, piece: int, share: float, x: Floats, jet: Floats, slope: Floats
 ) -> tuple[float, float, float]:
@@ -197,7 +206,7 @@ def _on_piece(
     return math.sqrt(total), along, square + bend
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined
 def _nearest_on_piece(rim: Any, cells: Any, piece: int, x: Floats, jet: Floats, slope: Floats) -> tuple[float, float]:
     """Return where a piece of a loop is nearest to a point, 0 to 1, and how far it is there.
 
@@ -225,17 +234,18 @@ def _nearest_on_piece(rim: Any, cells: Any, piece: int, x: Floats, jet: Floats, 
     return t, far
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _from_chord(a: Floats, b: Floats, x: Floats) -> float:
-    """Return the distance of a point from a straight line between two others."""
-    along = square = 0.0
+@inlined
+def _to_chord(ends: Floats, piece: int, x: Floats) -> float:
+    """Return the square of the distance of a point from the straight line between the ends of a piece."""
+    along = square = total = 0.0
     for k in range(3):
-        along += (x[k] - a[k]) * (b[k] - a[k])
-        square += (b[k] - a[k]) ** 2
-    t, total = min(max(along / max(square, 1e-300), 0.0), 1.0), 0.0
+        side = ends[piece, 1, k] - ends[piece, 0, k]
+        along += (x[k] - ends[piece, 0, k]) * side
+        square += side * side
+    t = min(max(along / max(square, 1e-300), 0.0), 1.0)
     for k in range(3):
-        total += (x[k] - a[k] - t * (b[k] - a[k])) ** 2
-    return math.sqrt(total)
+        total += (x[k] - ends[piece, 0, k] - t * (ends[piece, 1, k] - ends[piece, 0, k])) ** 2
+    return total
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -254,29 +264,31 @@ def rim_feet(
 
     ``rim``: start and way of short pieces in the parameters of their patch, the patch, then the breaks of all patches
     in u and v, where those of each begin, and its first cell. No place of a piece is farther than ``bent`` from the
-    chord of its ``ends``; ``tree``: order, nodes and leaves of a ball tree of their middles.
+    chord of its ``ends``; ``tree``: order, nodes and leaves of a tree of boxes around them.
     """
     order, nodes, leaves = tree
     inner = len(nodes) // 2
-    jet, slope, stack, away = np.empty((7, 4)), np.empty(3), np.empty(128, np.int64), np.empty(128)
+    jet, slope, stack, off = np.empty((7, 4)), np.empty(3), np.empty(128, np.int64), np.empty(128)
     for i in range(len(target)):
         x = target[i]
-        near = _near(order, nodes, leaves, x)
-        share[i], apart[i] = _nearest_on_piece(rim, cells, near, x, jet, slope)
-        piece[i] = near
+        piece[i], apart[i] = -1, np.inf
         top = 1
-        stack[0], away[0] = 0, _from(nodes, 0, x)
+        stack[0], off[0] = 0, 0.0
         while top:
             top -= 1
             node = stack[top]
-            if away[top] - nodes[node, 3] >= apart[i]:
+            if off[top] >= apart[i] ** 2:
                 continue
             if node < inner:
-                top = _children(nodes, node, x, stack, away, top)
+                top = _children(nodes, node, x, stack, off, top)
                 continue
-            for k in range(LEAF * (node - inner), LEAF * (node - inner + 1)):
+            first = LEAF * (node - inner)
+            if piece[i] < 0:
+                piece[i] = order[_nearest_in_leaf(leaves, first, x)]
+                share[i], apart[i] = _nearest_on_piece(rim, cells, piece[i], x, jet, slope)
+            for k in range(first, first + LEAF):
                 one = order[k]
-                if one != piece[i] and _from_chord(ends[one, 0], ends[one, 1], x) - bent[one] < apart[i]:
+                if one != piece[i] and _to_chord(ends, one, x) < (apart[i] + bent[one]) ** 2:
                     t, far = _nearest_on_piece(rim, cells, one, x, jet, slope)
                     if far < apart[i]:
                         piece[i], share[i], apart[i] = one, t, far

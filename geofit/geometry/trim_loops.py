@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
-from geofit.geometry.ball_tree import neighbours_together
+from geofit.geometry.box_tree import neighbours_together
 from geofit.geometry.cells import Cells, Place, refine_foot_points, tabulate
 from geofit.geometry.clip import clip
 from geofit.geometry.elevation import plan_map

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.threads import side_by_side
-from geofit.geometry.ball_tree import BallTree
+from geofit.geometry.box_tree import BoxTree
 from geofit.geometry.foot_points import Projection
 from geofit.geometry.projection import Searchable, searchable
 from geofit.splines.patch import Patch
@@ -62,7 +62,7 @@ class TrimSearch:
         self.surface: Searchable = searchable(patches)
         self.pieces = pieces
         none = np.zeros(len(pieces.start))
-        self._rim_tree = BallTree.of(pieces.middle, pieces.reach, none, none).arrays
+        self._rim_tree = BoxTree.of(pieces.middle, pieces.reach, none, none).arrays
         breaks = self.surface.cells.breaks
         ends = [np.cumsum([0, *(len(pair[axis]) for pair in breaks)]) for axis in (0, 1)]
         knots = [np.concatenate([pair[axis] for pair in breaks]) for axis in (0, 1)]

@@ -74,7 +74,7 @@ def test_many_points_find_what_few_find(compiled, name, trimmed, spread):
 
 @pytest.mark.parametrize("spread", [0.2, 40.0])
 @pytest.mark.parametrize("trimmed", [False, True])
-@pytest.mark.parametrize("name", ["horizon", "fold"])
+@pytest.mark.parametrize("name", ["horizon", "creased", "fold"])
 def test_many_points_against_a_dense_search(compiled, name, trimmed, spread):
     (patch,) = SURFACES[name]
     loops = (ring(patch, (0.5, 0.45), 0.42, 150), ring(patch, (0.55, 0.5), 0.12, 40)) if trimmed else ()
@@ -82,6 +82,18 @@ def test_many_points_against_a_dense_search(compiled, name, trimmed, spread):
     compiled(1)
     found = nearest_on_trimmed([patch], xyz, (loops,) if loops else ())
     assert np.abs(found.distance) == pytest.approx(converged_distances(patch, loops, xyz), abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(3, 8))
+def test_feet_on_both_sides_of_a_crease_are_looked_for(compiled, seed):
+    # Two of them may be less than half a step of the search lattice apart.
+    patches = SURFACES["creased"]
+    xyz = points_about(patches, 700, 25.0, seed)
+    found = []
+    for least in (1, 10**9):
+        compiled(least)
+        found.append(np.abs(nearest_on_trimmed(patches, xyz).distance))
+    assert found[0] == pytest.approx(found[1], abs=1e-9)
 
 
 def test_a_face_smaller_than_the_lattice_is_found(compiled):

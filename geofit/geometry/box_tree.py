@@ -1,4 +1,4 @@
-"""A tree of balls around places: what may lie near to a point is found without a number of neighbours fixed before."""
+"""A tree of boxes around places: what may lie near to a point is found without a number of neighbours fixed before."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["LEAF", "BallTree", "neighbours_together"]
+__all__ = ["LEAF", "BoxTree", "neighbours_together"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -38,12 +38,12 @@ def neighbours_together(points: Floats) -> tuple[Ints, Ints]:
 
 
 @dataclass(frozen=True, eq=False)
-class BallTree:
-    """Balls of a full binary tree: node k has the nodes 2 k + 1 and 2 k + 2, the last level is the leaves.
+class BoxTree:
+    """Boxes of a full binary tree: node k has the nodes 2 k + 1 and 2 k + 2, the last level is the leaves.
 
-    ``order`` (leaves * LEAF,) numbers of the places leaf by leaf, some of them twice. ``nodes`` (nodes, 6): centre and
-    radius of a ball that contains the places with what each reaches around itself, metres, the largest spacing and
-    curvature of its places. ``leaves`` (leaves * LEAF, 5): position, spacing and curvature of the places in their
+    ``order`` (leaves * LEAF,) numbers of the places leaf by leaf, some of them twice. ``nodes`` (nodes, 8): lowest and
+    highest corner of a box that contains the places with what each reaches around itself, metres, the largest spacing
+    and curvature of its places. ``leaves`` (leaves * LEAF, 5): position, spacing and curvature of the places in their
     order: what is looked at together lies together in memory.
     """
 
@@ -52,22 +52,17 @@ class BallTree:
     leaves: Floats
 
     @classmethod
-    def of(cls, points: Floats, reach: Floats, spacing: Floats, curvature: Floats) -> BallTree:
-        """Return the tree of (n, 3) places with figures (n,) of each.
-
-        Halved across the longest side, level by level (S. M. Omohundro, Five balltree construction algorithms, 1989).
-        """
+    def of(cls, points: Floats, reach: Floats, spacing: Floats, curvature: Floats) -> BoxTree:
+        """Return the tree of (n, 3) places with figures (n,) of each, halved across the longest side level by level."""
         levels = max(int(np.ceil(np.log2(max(len(points) / LEAF, 1)))), 0)
         order = np.resize(np.arange(len(points)), LEAF << levels)
         parts: list[Floats] = []
         for level in range(levels + 1):
             members = order.reshape(1 << level, -1)
-            at = points[members]
+            at, around = points[members], reach[members][..., None]
             low, high = at.min(axis=1), at.max(axis=1)
-            centre = (low + high) / 2
-            radius = (np.linalg.norm(at - centre[:, None], axis=2) + reach[members]).max(axis=1)
             widest, bent = spacing[members].max(axis=1), curvature[members].max(axis=1)
-            parts.append(np.column_stack([centre, radius, widest, bent]))
+            parts.append(np.column_stack([(at - around).min(axis=1), (at + around).max(axis=1), widest, bent]))
             if level < levels:
                 axis = np.argmax(high - low, axis=1)[:, None, None]
                 along = np.take_along_axis(at, axis, axis=2)[..., 0]
