@@ -305,7 +305,7 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
     say("""`geofit fit site.toml --scheduler local` fits horizons side by side in processes of this machine; an address
         or the file of a scheduler (`dask scheduler --scheduler-file FILE`, as a job of Slurm starts it) sends them to a
         Dask cluster. The surfaces are the same to the last bit. A worker that dies costs its horizon a second try;
-        where the scheduler is lost, the run ends with an error, and the horizons are fitted anew.""")
+        where the scheduler is lost, or the run is stopped, the same command goes on with the other horizons.""")
     lines += [
         "| horizons of 600 points | one process, s | two processes, both together, s | half of these / one "
         "| wall time, two / one |",

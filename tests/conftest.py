@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import os
+import tempfile
 from pathlib import Path
 
 import pytest
 
 import geofit
 
+#: Where programs keep their state: not that of the user who runs the tests.
+STATE = tempfile.TemporaryDirectory(prefix="geofit-state-")
+os.environ["XDG_STATE_HOME"] = STATE.name
 SAMPLE = Path(__file__).parents[1] / "sample_data" / "site.toml"
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,7 @@ from geofit.data.errors import FitError
 from geofit.data.messages import message
 from geofit.data.prediction import LeftOutBody, Scheme
 from geofit.prediction.kriging import krige_left_out
-from geofit.streaming.executors import run_tasks
+from geofit.streaming.executors import Where
 
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
@@ -122,6 +123,7 @@ def leave_one_hole_out(
     compared: bool = True,
     scheduler: str = "local",
     workers: int | None = 1,
+    folder: Path | None = None,
 ) -> CrossValidation:
     """Fit a body again without each of its holes, and compare with two usual methods on the same folds.
 
@@ -141,6 +143,8 @@ def leave_one_hole_out(
     scheduler, workers : str, int
         Where the fits without a hole are made, see :func:`geofit.streaming.executors.run_tasks`; by default here. The
         scores are the same to the last bit.
+    folder : Path, optional
+        Where the scores of holes are kept: a run that was stopped goes on with the others.
 
     Raises
     ------
@@ -160,7 +164,8 @@ def leave_one_hole_out(
     kriged = _kriged(data, names) if compared else {}
     # A new one: what the body has computed so far need not travel.
     bare = replace(body, accuracy=None)
-    found = dict(run_tasks(_without_hole, [(bare, name, compared) for name in names], scheduler, workers))
+    where = Where(scheduler, workers, folder)
+    found = dict(where.run(_without_hole, [(bare, name, compared) for name in names]))
     for k, name in enumerate(names):
         score = found[k]
         if isinstance(score, str):

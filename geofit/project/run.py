@@ -25,6 +25,7 @@ from geofit.project.single_reports import BodyPart, write_body_part
 from geofit.project.step_files import Signed
 from geofit.report.result import HorizonResult
 from geofit.streaming.executors import HERE, Where
+from geofit.streaming.kept import clear_kept
 
 if TYPE_CHECKING:
     from geofit.fitting.horizon_fit import HorizonFit
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
 __all__ = ["Form", "Reports", "RunResult", "run_horizons", "write_reports"]
 
 Form = Literal["html", "pdf", "json"]
+#: Folder of a run's results in which fits are kept until all is written.
+FITTED = "_fits"
 #: Share of the fits in a run's time.
 FITS = 0.3
 
@@ -154,14 +157,17 @@ def run_horizons(
     with crew(min(workers, len(names))) if hands is None else nullcontext(hands) as ours:
         listen = _within(progress, 0.0, FITS)
         fits = fit_site(
-            site, names, changes, listen, separate=separate, scheduler=scheduler, workers=workers, fitted=fitted
-        )
+            site, names, changes, listen, separate=separate, scheduler=scheduler, workers=workers, fitted=fitted,
+            folder=out / FITTED,
+        )  # fmt: skip
         # Horizons are examined side by side already; of one alone, and on other machines, the folds are.
         apart = scheduler is not None and (scheduler != "local" or len(fits.surfaces) == 1)
         where = Where(scheduler or "local", workers) if apart else HERE
         stated = signed or Signed(site.title.author, site.title.organisation)
         stated = stated.about(_corners(site, fits))
-        return _write_results(site, fits, out, ours, progress, language, date, pdf, bands, bodies, where, stated)
+        result = _write_results(site, fits, out, ours, progress, language, date, pdf, bands, bodies, where, stated)
+    clear_kept(out / FITTED)
+    return result
 
 
 def _corners(site: Site, fits: SiteFit) -> list[NDArray[np.float64]]:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import combinations
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,7 @@ from geofit.site.order import Order, compare_horizons
 from geofit.site.separate import Contradiction, separate_horizons
 from geofit.site.site_checks import add_site_checks
 from geofit.site.throw import FaultCut
-from geofit.streaming.executors import run_tasks
+from geofit.streaming.executors import Where
 
 __all__ = ["SiteFit", "compare_in_order", "fit_site"]
 
@@ -66,6 +67,7 @@ def fit_site(
     scheduler: str | None = None,
     workers: int | None = None,
     fitted: Callable[[HorizonFit], None] | None = None,
+    folder: Path | None = None,
 ) -> SiteFit:
     """Fit horizons of a site, and ask of each what the dips and the ground of the site say.
 
@@ -86,6 +88,9 @@ def fit_site(
         the other in this process. The surfaces are the same.
     fitted : callable, optional
         Called with each surface as soon as it is fitted and checked, before the others are.
+    folder : Path, optional
+        Where a scheduler's fits are kept: a run that was stopped, or lost its scheduler, goes on with the other
+        horizons.
 
     Returns
     -------
@@ -110,7 +115,8 @@ def fit_site(
     if scheduler is None:
         found = _one_by_one(site, names, changes or {}, progress, fitted or _deaf)
     else:
-        found = _side_by_side(site, names, changes or {}, progress, fitted or _deaf, scheduler, workers)
+        where = Where(scheduler, workers, folder)
+        found = _side_by_side(site, names, changes or {}, progress, fitted or _deaf, where)
     if separate:
         tell(progress, "separation", 1.0)
         _separate_horizons(site, found)
@@ -158,13 +164,12 @@ def _side_by_side(
     changes: Mapping[str, Any],
     progress: Progress | None,
     fitted: Callable[[HorizonFit], None],
-    scheduler: str,
-    workers: int | None,
+    where: Where,
 ) -> SiteFit:
     """Fit each horizon with the faults that cut it where a scheduler sends it, and put all together in their order."""
     tasks = [(_alone(site, name), name, dict(changes)) for name in names]
     parts: dict[int, SiteFit] = {}
-    for k, part in run_tasks(_fitted_alone, tasks, scheduler, workers):
+    for k, part in where.run(_fitted_alone, tasks):
         parts[k] = part
         for surface in part.surfaces.values():
             fitted(surface)

@@ -22,7 +22,7 @@ from typing import Any, TypeVar
 from geofit.data.distribution import install_line
 from geofit.data.errors import MissingDependencyError, SchedulerError, SettingsError
 from geofit.data.messages import message
-from geofit.streaming.kept import keep_arrays, kept_arrays, kept_path
+from geofit.streaming.kept import keep, kept, kept_path
 
 __all__ = ["HERE", "WORKERS", "SchedulerError", "Where", "run_tasks"]
 
@@ -76,8 +76,7 @@ def run_tasks(
 class Where:
     """Where tasks run: a scheduler and, of this machine, the number of its processes; see :func:`run_tasks`.
 
-    In ``folder`` each result is kept as soon as it is ready, and one that is there is not computed again; results are
-    arrays, tuples of arrays or None then.
+    In ``folder`` each result is kept as soon as it is ready, and one that is there is not computed again.
     """
 
     scheduler: str = "local"
@@ -91,13 +90,13 @@ class Where:
             return
         paths, left = [kept_path(self.folder, work, task) for task in tasks], []
         for k, path in enumerate(paths):
-            known, result = kept_arrays(path)
+            known, result = kept(path)
             if known:
                 yield k, result
             else:
                 left.append(k)
         for k, result in run_tasks(work, [tasks[k] for k in left], self.scheduler, self.workers):
-            keep_arrays(paths[left[k]], result)
+            keep(paths[left[k]], result)
             yield left[k], result
 
 
@@ -215,8 +214,7 @@ def _lost(scheduler: str, ready: int, total: int) -> SchedulerError:
         message(
             "streaming.scheduler-lost",
             "The scheduler at {scheduler} or its workers are lost; {ready} of {total} tasks were ready. Start the same "
-            "command again: a cloud goes on with the other parts, a cross-validation with the other folds; horizons "
-            "are fitted anew.",
+            "command again: it goes on with the others.",
             scheduler=scheduler,
             ready=ready,
             total=total,

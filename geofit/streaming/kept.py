@@ -1,27 +1,31 @@
 """Results of tasks in a folder: what was ready when a run stopped is read again, and not computed.
 
-A result belongs to its task by the SHA-256 of what was computed from what, and by which version.
+A result belongs to its task by the SHA-256 of what was computed from what, and by which version. Files that did not
+come from this user of this machine are not read: each is signed with a key that lies in the user's own folder (HMAC,
+RFC 2104), as reading a pickled object may run any code.
 """
 
 from __future__ import annotations
 
 import hashlib
+import hmac
 import pickle
-import zipfile
+import secrets
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from geofit import __version__
+from geofit.data.errors import InputError
 from geofit.data.files import folder_for, replacing
 
-__all__ = ["clear_kept", "keep_arrays", "kept_arrays", "kept_path"]
+__all__ = ["clear_kept", "keep", "kept", "kept_path"]
 
-_ENDING = ".fold.npz"
-_ONE = "one"
+_ENDING = ".kept"
+#: Bytes of the key and of a signature.
+_SIZE = 32
 
 
 def kept_path(folder: Path, work: Callable[..., Any], task: Any) -> Path:
@@ -31,35 +35,30 @@ def kept_path(folder: Path, work: Callable[..., Any], task: Any) -> Path:
     return folder / f"{digest.hexdigest()[:32]}{_ENDING}"
 
 
-def keep_arrays(path: Path, result: Any) -> None:
-    """Write a result: an array, a tuple of arrays, or None.
+def keep(path: Path, result: Any) -> None:
+    """Write a result.
 
     Raises
     ------
     InputError
         If the system refuses to write the file.
-    TypeError
-        If the result is anything else: it would be lost.
     """
-    many = (result,) if isinstance(result, np.ndarray) else () if result is None else result
-    if not isinstance(many, tuple) or not all(isinstance(one, np.ndarray) for one in many):
-        raise TypeError(f"an array, a tuple of arrays or None can be kept, not {type(result).__name__}")
     folder_for(path.parent)
-    arrays = {_ONE: result} if isinstance(result, np.ndarray) else {f"{k:03d}": one for k, one in enumerate(many)}
+    data = pickle.dumps(result, protocol=5)
     with replacing(path) as part:
-        np.savez(part, **arrays)
+        part.write_bytes(hmac.digest(_key(), data, "sha256") + data)
 
 
-def kept_arrays(path: Path) -> tuple[bool, Any]:
-    """Return whether the result is there, whole, and the result."""
+def kept(path: Path) -> tuple[bool, Any]:
+    """Return whether the result is there, whole and of this user, and the result."""
     try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as found:
-            arrays = {name: found[name] for name in sorted(found.files)}
-    except (OSError, ValueError, zipfile.BadZipFile, EOFError):
+        found = path.read_bytes()
+    except OSError:
         return False, None
-    if _ONE in arrays:
-        return True, arrays[_ONE]
-    return True, tuple(arrays.values()) or None
+    signature, data = found[:_SIZE], found[_SIZE:]
+    if not hmac.compare_digest(signature, hmac.digest(_key(), data, "sha256")):
+        return False, None
+    return True, pickle.loads(data)
 
 
 def clear_kept(folder: Path) -> None:
@@ -68,3 +67,19 @@ def clear_kept(folder: Path) -> None:
         for path in folder.glob(f"*{_ENDING}"):
             path.unlink()
         folder.rmdir()
+
+
+@cache
+def _key() -> bytes:
+    """Return the user's key, made at first; where it cannot be written, one that ends with this process."""
+    from platformdirs import user_state_path
+
+    path = user_state_path("geofit", appauthor=False) / "kept.key"
+    with suppress(OSError, InputError):
+        if not path.exists() or path.stat().st_size != _SIZE:
+            folder_for(path.parent)
+            with replacing(path) as part:
+                part.touch(0o600)
+                part.write_bytes(secrets.token_bytes(_SIZE))
+        return path.read_bytes()
+    return secrets.token_bytes(_SIZE)

@@ -16,7 +16,7 @@ from geofit.data.errors import SchedulerError
 from geofit.prediction import refits
 from geofit.prediction.examine import examine
 from geofit.streaming.executors import Where
-from geofit.streaming.kept import clear_kept, keep_arrays
+from geofit.streaming.kept import clear_kept, keep
 
 
 def overturned():
@@ -119,12 +119,12 @@ sys.path.insert(0, {tests!r})
 import test_folds
 from geofit.prediction.examine import examine
 from geofit.streaming import executors
-keep = executors.keep_arrays
+keep = executors.keep
 def keep_some(path, result):
     keep(path, result)
     if len(list(path.parent.iterdir())) == {count}:
         os.kill(os.getpid(), signal.SIGKILL)
-executors.keep_arrays = keep_some
+executors.keep = keep_some
 examine(test_folds.{made}(), folder=Path({folder!r}))
 """
 
@@ -139,11 +139,11 @@ def test_a_killed_examination_goes_on_with_the_other_folds(request, tmp_path, mo
     assert len(before) == count
     computed = []
 
-    def keep(path, result):
+    def noted(path, result):
         computed.append(path.name)
-        keep_arrays(path, result)
+        keep(path, result)
 
-    monkeypatch.setattr("geofit.streaming.executors.keep_arrays", keep)
+    monkeypatch.setattr("geofit.streaming.executors.keep", noted)
     assert_same(examine(surface, folder=folder), examine(surface))
     # Each of the others once, and none of those that were ready.
     assert len(computed) == len(set(computed)) > 0
@@ -158,9 +158,3 @@ def test_a_kept_fold_that_was_cut_off_is_computed_again(folded, tmp_path):
     assert_same(examine(folded, folder=tmp_path), whole)
     clear_kept(tmp_path)
     assert not tmp_path.exists()
-
-
-def test_a_result_that_could_not_be_kept_is_refused(tmp_path):
-    with pytest.raises(TypeError, match="not dict"):
-        keep_arrays(tmp_path / "one.fold.npz", {"a": np.zeros(2)})
-    assert not list(tmp_path.iterdir())
