@@ -248,7 +248,7 @@ def opened(count: int) -> Figures:
 ROWS: dict[str, tuple[Callable[..., Figures], tuple[Any, ...]]] = {
     "triangles": (triangles, ("waves", "rough", "outline")),
     "frames": (frames, ("even", "stations")),
-    "opened": (opened, (300_000, 1_000_000, 3_000_000)),
+    "opened": (opened, (300_000, 1_000_000, 10_000_000)),
 }
 
 

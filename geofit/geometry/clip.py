@@ -45,16 +45,19 @@ def clip(points: Floats, triangles: Ints, uv: Floats, *outlines: Floats) -> tupl
     rings = [_distinct(outline) for outline in outlines]
     plan = np.ascontiguousarray(points[:, :2])
     corners = [plan[triangles[:, k]] for k in range(3)]
-    touched = np.any([_touched(corners, ring) for ring in rings], axis=0)
+    beside = [own for ring in rings for own in _touched(corners, ring)]
+    touched = np.zeros(len(triangles), bool)
+    touched[np.concatenate(beside)] = True
     rest, near = np.flatnonzero(~touched), np.flatnonzero(touched)
     # Only the triangles along the outlines are worked on, with their own vertices.
     used, numbers = np.unique(triangles[near], return_inverse=True)
     work = _Work(points[used], numbers.reshape(-1, 3), uv[near])
-    for corner in np.concatenate(rings):
-        work.insert(corner)
-    for ring in rings:
-        for start, end in zip(ring, np.roll(ring, -1, axis=0), strict=True):
-            work.split(start, end)
+    beside = [np.searchsorted(near, own) for own in beside]
+    starts, ends = np.concatenate(rings), np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
+    for corner, own in zip(starts, beside, strict=True):
+        work.insert(corner, own)
+    for start, end, own in zip(starts, ends, beside, strict=True):
+        work.split(start, end, own)
     made = len(work.points) - len(used)
     back = np.concatenate([used, len(points) + np.arange(made)])
     every = np.concatenate([points, work.points[len(used) :]])
@@ -67,21 +70,24 @@ def clip(points: Floats, triangles: Ints, uv: Floats, *outlines: Floats) -> tupl
     return every, cut[keep], parent[keep], np.concatenate([uv[rest], work.uv])[keep]
 
 
-def _touched(corners: list[Floats], outline: Floats) -> NDArray[np.bool_]:
-    """Which triangles, three times (m, 2), a side of the outline may run through or along: never too few."""
+def _touched(corners: list[Floats], outline: Floats) -> list[Ints]:
+    """Return of each side of the outline the triangles, three times (m, 2), that it may run through: never too few."""
     a, b, c = corners
     low, high = np.minimum(np.minimum(a, b), c) - ON, np.maximum(np.maximum(a, b), c) + ON
-    touched = np.zeros(len(a), bool)
     known = np.flatnonzero(_Raster(outline).near(low, high))
+    # From south to north: those beside a side follow each other.
+    known = known[np.argsort(low[known, 1], kind="stable")]
     low, high, plan = low[known], high[known], np.stack([a[known], b[known], c[known]], axis=1)
+    tallest = float((high - low)[:, 1].max(initial=0.0))
+    found = []
     for start, end in zip(outline, np.roll(outline, -1, axis=0), strict=True):
         (x0, y0), (x1, y1) = np.minimum(start, end), np.maximum(start, end)
-        box = (low[:, 0] <= x1) & (high[:, 0] >= x0) & (low[:, 1] <= y1) & (high[:, 1] >= y0)
-        some = np.flatnonzero(box & ~touched[known])
+        own = slice(*np.searchsorted(low[:, 1], (y0 - tallest, y1 + ON)))
+        some = own.start + np.flatnonzero((low[own, 0] <= x1) & (high[own, 0] >= x0) & (high[own, 1] >= y0))
         way = (end - start) / np.linalg.norm(end - start)
         off = (plan[some] - start) @ np.array([-way[1], way[0]])
-        touched[known[some]] = (off.min(axis=1) <= ON) & (off.max(axis=1) >= -ON)
-    return touched
+        found.append(known[some[(off.min(axis=1) <= ON) & (off.max(axis=1) >= -ON)]])
+    return found
 
 
 class _Raster:
@@ -161,6 +167,14 @@ class _Work:
     def __init__(self, points: Floats, triangles: Ints, uv: Floats) -> None:
         self._points, self._triangles, self._uv = _Rows(points), _Rows(triangles), _Rows(uv)
         self._parent = _Rows(np.arange(len(triangles)))
+        self._marked = np.zeros(len(triangles), bool)
+
+    def _pieces(self, parents: Ints) -> Ints:
+        """Return what is left of triangles of the start."""
+        self._marked[parents] = True
+        pieces = np.flatnonzero(self._marked[self.parent])
+        self._marked[parents] = False
+        return pieces
 
     @property
     def points(self) -> Floats:
@@ -178,19 +192,17 @@ class _Work:
     def parent(self) -> Ints:
         return self._parent.filled
 
-    def insert(self, corner: Floats) -> None:
-        """Make a corner of the outline a vertex of every sheet that stands over it."""
-        plan = self.points[self.triangles, :2]
-        one, two, three = plan[:, 0], plan[:, 1], plan[:, 2]
-        low, high = np.minimum(np.minimum(one, two), three) - ON, np.maximum(np.maximum(one, two), three) + ON
-        x, y = corner
-        near = (low[:, 0] <= x) & (low[:, 1] <= y) & (high[:, 0] >= x) & (high[:, 1] >= y)
+    def insert(self, corner: Floats, beside: Ints) -> None:
+        """Make a corner of the outline a vertex of every sheet over it; only triangles ``beside`` it can be."""
+        pieces = self._pieces(beside)
+        corners = self.points[self.triangles[pieces], :2]
+        near = (corners.min(axis=1) - ON <= corner).all(axis=1) & (corners.max(axis=1) + ON >= corner).all(axis=1)
         divided: dict[tuple[int, int], int] = {}
-        for k in np.flatnonzero(near):
-            distance, share = _heights(plan[k], corner)
+        for k, plan in zip(pieces[near], corners[near], strict=True):
+            distance, share = _heights(plan, corner)
             if distance is None or distance.min() < -ON:
                 continue
-            if np.linalg.norm(plan[k] - corner, axis=1).min() <= ON:
+            if np.linalg.norm(plan - corner, axis=1).min() <= ON:
                 continue
             close = int(np.argmin(distance))
             if distance[close] <= ON:
@@ -206,31 +218,27 @@ class _Work:
                 number = self._new(share @ self.points[self.triangles[k]], corner)
                 self._fan(int(k), number, share)
 
-    def split(self, start: Floats, end: Floats) -> None:
-        """Cut the triangles that one side of the outline runs through along it."""
+    def split(self, start: Floats, end: Floats, beside: Ints) -> None:
+        """Cut triangles along one side of the outline; only those ``beside`` it are run through."""
         length = np.linalg.norm(end - start)
         direction = (end - start) / length
-        plan = self.points[:, :2] - start
-        off = direction[0] * plan[:, 1] - direction[1] * plan[:, 0]
-        along = plan @ direction
-        sign = np.where(np.abs(off) <= ON, 0, np.sign(off)).astype(int)
-        a, b, c = (sign[self.triangles[:, corner]] for corner in range(3))
-        least, most = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
-        crossed = np.flatnonzero((least < 0) & (most > 0))
-        ahead = along[self.triangles[crossed]]
-        crossed = crossed[(ahead.max(axis=1) > 0) & (ahead.min(axis=1) < length)]
-        numbers = self.triangles[crossed]
-        signs, offs, alongs = sign[numbers], off[numbers], along[numbers]
+        pieces = self._pieces(beside)
+        x, y = np.moveaxis(self.points[self.triangles[pieces], :2] - start, 2, 0)
+        offs, alongs = direction[0] * y - direction[1] * x, direction[0] * x + direction[1] * y
+        signs = np.where(np.abs(offs) <= ON, 0, np.sign(offs)).astype(int)
+        crossed = (signs.min(axis=1) < 0) & (signs.max(axis=1) > 0)
+        crossed &= (alongs.max(axis=1) > 0) & (alongs.min(axis=1) < length)
+        pieces, signs, offs, alongs = pieces[crossed], signs[crossed], offs[crossed], alongs[crossed]
         cutting = signs * signs[:, NEXT] < 0
         t = np.divide(offs, offs - offs[:, NEXT], out=np.zeros_like(offs), where=cutting)
         # Of each triangle the side enters and leaves through two edges, or through an edge and a corner.
         ends = np.where(cutting, alongs + t * (alongs[:, NEXT] - alongs), 0.0) + np.where(signs == 0, alongs, 0.0)
         middle = 0.5 * ends.sum(axis=1)
         within = (middle > 0) & (middle < length)
-        self._cut(crossed[within], cutting[within], off)
+        self._cut(pieces[within], cutting[within], offs[within])
 
-    def _cut(self, crossed: Ints, cutting: NDArray[np.bool_], off: Floats) -> None:
-        """Divide triangles at the one or two edges, (m, 3), along which ``off`` of all vertices changes its sign."""
+    def _cut(self, crossed: Ints, cutting: NDArray[np.bool_], offs: Floats) -> None:
+        """Divide triangles at the one or two edges, (m, 3), along which ``offs``, at their corners, change sign."""
         row, edge = np.nonzero(cutting)
         numbers = self.triangles[crossed[row]]
         a, b = (numbers[np.arange(len(row)), corner % 3] for corner in (edge, edge + 1))
@@ -238,7 +246,9 @@ class _Work:
         # Both triangles at an edge get one vertex.
         _, first, which = np.unique(low * len(self.points) + high, return_index=True, return_inverse=True)
         known = np.sort(first)
-        t = off[low] / (off[low] - off[high])
+        off_a, off_b = offs[row, edge], offs[row, (edge + 1) % 3]
+        off_low, off_high = np.where(a == low, off_a, off_b), np.where(a == low, off_b, off_a)
+        t = off_low / (off_low - off_high)
         start, end = self.points[low[known]], self.points[high[known]]
         number = len(self.points) + np.searchsorted(known, first)[which]
         self._points.extend(start + t[known, None] * (end - start))
