@@ -90,9 +90,10 @@ def maximal_balls(
         The pore space. With the exact rule a large one is worked through in slabs.
     rule : {"exact", "paper", "cover"}, optional
         ``"exact"``: every ball that no other ball includes (default for cubic voxels). ``"paper"``: the article's
-        comparison R2 + distance <= L1, which loses voxels; compare ``union()`` with the volume. ``"cover"``: from large
-        to small, every ball that covers a voxel which no earlier ball covers: a subset of the maximal balls with the
-        same union (default, and only rule, for voxels that are not cubic).
+        comparison R2 + distance <= L1, which deletes some balls that are not included and keeps some that are; it
+        loses no voxel, since it deletes a ball only if its centre lies in a larger one. ``"cover"``: from large to
+        small, every ball that covers a voxel which no earlier ball covers: a subset of the maximal balls with the same
+        union (default, and only rule, for voxels that are not cubic).
     border : "closed", "open" or three of them
         Closed (the article's rule): the sample's faces stop a ball like rock. Open: only rock does.
     progress : callable, optional

@@ -176,11 +176,10 @@ def _assembled(
     size = np.bincount(pore_of, minlength=count + 1)[1:] * edges.prod()
     radius = radius_at[levels[slots(space, peaks)]]
     number = np.cumsum(kept) - 1
-    pore_of = np.where(kept, number + 1, 0).astype(np.int32)[pore_of - 1]
 
     free = np.zeros((count, 3))
     inscribed = np.maximum(widest_balls(peaks, free, space, edges, centre.astype(float)) - 0.5, radius)
-    sections = measure_sections(inner, space, edges, radius_at, in_faces=False)
+    sections = measure_sections(inner, space, pore_of, edges, radius_at, in_faces=False)
     use = kept[inner.first] & own
     to_centre = np.stack(
         [np.linalg.norm((sections.middle - centre[end]) * edges, axis=1) for end in (inner.first, inner.second)], axis=1
@@ -195,7 +194,7 @@ def _assembled(
         sections.middle[use],
         sections.conductance[use],
     )
-    sections = measure_sections(outer, space, edges, radius_at, in_faces=True)
+    sections = measure_sections(outer, space, pore_of, edges, radius_at, in_faces=True)
     to_face = np.linalg.norm((sections.middle - centre[outer.first]) * edges, axis=1)
     use = kept[outer.first]
     face_throats = FaceThroats(
@@ -212,6 +211,7 @@ def _assembled(
     for table in (throats, face_throats):
         for array in vars(table).values():
             array.flags.writeable = False
+    pore_of = np.where(kept, number + 1, 0).astype(np.int32)[pore_of - 1]
     return PoreNetwork(
         _pores((centre, radius, inscribed, size, faces), kept),
         throats,

@@ -46,3 +46,54 @@ def maximal(reach2):
                             if out[i, j, k] and reach2[a, b, c] > own and far < reach2[a, b, c]:
                                 out[i, j, k] = not ball_inside(own, a - i, b - j, c - k, reach2[a, b, c])
     return out
+
+
+@njit(cache=True)
+def article_search(pore):
+    """The article's step 1: 26 runs bound a cube, then all its voxels are looked at; R² and L² of each pore voxel.
+
+    Where the cube leaves the sample it shrinks into it: half a side r, L² = (r + 1)².
+    """
+    n0, n1, n2 = pore.shape
+    radius2, limit2 = np.full(pore.shape, -1), np.full(pore.shape, -1)
+    for i in range(n0):
+        for j in range(n1):
+            for k in range(n2):
+                if not pore[i, j, k]:
+                    continue
+                # The widest cube within the sample.
+                bound = (min(i, j, k, n0 - 1 - i, n1 - 1 - j, n2 - 1 - k) + 1) ** 2
+                for a in range(-1, 2):
+                    for b in range(-1, 2):
+                        for c in range(-1, 2):
+                            x, y, z, steps = i, j, k, 0
+                            while 0 <= x < n0 and 0 <= y < n1 and 0 <= z < n2 and pore[x, y, z]:
+                                x, y, z, steps = x + a, y + b, z + c, steps + 1
+                                if steps > 100:
+                                    break
+                            if steps <= 100 and 0 <= x < n0 and 0 <= y < n1 and 0 <= z < n2:
+                                bound = min(bound, steps * steps * (a * a + b * b + c * c))
+                half = int(np.sqrt(bound - 1))
+                nearest, farthest = -1, 0
+                for x in range(i - half, i + half + 1):
+                    for y in range(j - half, j + half + 1):
+                        for z in range(k - half, k + half + 1):
+                            square = (x - i) ** 2 + (y - j) ** 2 + (z - k) ** 2
+                            if square >= bound:
+                                continue
+                            if not pore[x, y, z]:
+                                nearest = square if nearest < 0 else min(nearest, square)
+                            else:
+                                farthest = max(farthest, square)
+                if nearest < 0:
+                    radius2[i, j, k], limit2[i, j, k] = farthest, bound + 1
+                    continue
+                largest = 0
+                for x in range(half + 1):
+                    for y in range(x + 1):
+                        for z in range(y + 1):
+                            square = x * x + y * y + z * z
+                            if square < nearest:
+                                largest = max(largest, square)
+                radius2[i, j, k], limit2[i, j, k] = largest, nearest + 1
+    return radius2, limit2

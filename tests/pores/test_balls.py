@@ -6,8 +6,9 @@ from brute import ball_inside, blobs, maximal
 from conftest import ROCKS
 
 from geofit.pores import RockVolume, VolumeError, maximal_balls
+from geofit.pores.ball_selection import paper
 from geofit.pores.ball_tables import DIRECTIONS, ball_directions, inclusion_table
-from geofit.pores.distance import squared_distance
+from geofit.pores.distance import squared_distance, sums_of_squares
 
 
 def mask_of(balls):
@@ -19,7 +20,7 @@ def mask_of(balls):
 @pytest.mark.parametrize("border", ["closed", "open"])
 def test_the_same_balls_as_brute_force_for_200_volumes(border):
     for seed in range(200):
-        pore = blobs(seed, (24, 24, 24) if seed < 40 else (14, 13, 12))
+        pore = blobs(seed)
         balls = maximal_balls(RockVolume(pore, pore=True, voxel=1e-6), border=border)
         reach2 = squared_distance(pore, border)
         np.testing.assert_array_equal(mask_of(balls), maximal(reach2), err_msg=f"seed {seed}")
@@ -56,20 +57,50 @@ def test_the_inclusion_table_is_the_literal_inclusion():
             assert inside[0] == table[own]
 
 
-def test_the_articles_rule_errs_both_ways_and_its_loss_shows():
-    lost = 0
+def test_the_articles_rule_on_all_pairs_of_balls():
+    """PORES.md, test 6: of two balls with R1² <= 100 the rule deletes 684 that are not included, and keeps 1,181."""
+    below = sums_of_squares(110)
+    squares = [s for s in range(1, 101) if below[s + 1] == s]
+    following = {s: min(t for t in range(s + 1, 110) if below[t + 1] == t) for s in [0, *squares]}
+    false = missed = 0
+    for a, b, c in np.ndindex(11, 11, 11):
+        gap2 = a * a + b * b + c * c
+        if not a >= b >= c or not 0 < gap2 <= 100:
+            continue
+        pair = np.zeros((a + 1, b + 1, c + 1), np.int32)
+        for own in squares:
+            for other in (s for s in squares if s < own and gap2 <= own):
+                pair[0, 0, 0], pair[a, b, c] = following[own], following[other]
+                deleted = len(paper(pair)) == 1
+                # The rule looks only within R1: a ball round a centre farther off is never included.
+                included = ball_inside(following[other], -a, -b, -c, following[own])
+                false, missed = false + (deleted and not included), missed + (included and not deleted)
+    assert (false, missed) == (684, 1181)
+
+
+def test_the_case_of_figure_4_is_deleted():
+    """The ball of R² = 1 at distance sqrt 8 of that of R² = 13, whose L² is 15."""
+    pair = np.zeros((3, 3, 1), np.int32)
+    pair[0, 0, 0], pair[2, 2, 0] = 14, 2
+    assert paper(pair).tolist() == [0]
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_the_articles_rule_loses_no_voxel_of_a_volume(seed):
+    """It looks only at centres within R1, so the centre of a deleted ball lies in a ball that is kept."""
+    volume = RockVolume(blobs(seed), pore=True, voxel=1)
+    balls = maximal_balls(volume, rule="paper")
+    np.testing.assert_array_equal(balls.union(), volume.pore)
+
+
+def test_the_articles_rule_keeps_other_balls_than_the_exact_one():
+    more = fewer = 0
     for seed in range(6):
-        pore = blobs(seed)
-        volume = RockVolume(pore, pore=True, voxel=1)
-        paper, exact = maximal_balls(volume, rule="paper"), maximal_balls(volume)
-        lost += np.count_nonzero(paper.union() != pore)
-        assert set(map(tuple, paper.centre)) != set(map(tuple, exact.centre))
-    # Figure 4 of the article: the ball of R^2 = 1 at distance sqrt 8 lies in that of R^2 = 13, whose L^2 is 15.
-    assert 1 + np.sqrt(8) <= np.sqrt(15)
-    assert ball_inside(2, 2, 2, 0, 14)
-    # Its smallest error: R^2 = 2 and R^2 = 1 one voxel apart.
-    assert np.sqrt(4) >= 1 + 1
-    assert not ball_inside(2, 1, 0, 0, 3)
+        volume = RockVolume(blobs(seed), pore=True, voxel=1)
+        article, exact = (mask_of(maximal_balls(volume, rule=rule)) for rule in ("paper", "exact"))
+        more, fewer = more + np.count_nonzero(article & ~exact), fewer + np.count_nonzero(exact & ~article)
+    assert more > 0
+    assert fewer > 0
 
 
 @pytest.mark.parametrize("voxel", [(1e-6, 1e-6, 2e-6), (3e-6, 1.1e-6, 1e-6)])

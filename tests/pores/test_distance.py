@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from brute import blobs
+from brute import article_search, blobs
+from conftest import ROCKS
 from scipy import ndimage
 
 from geofit.pores.distance import squared_distance, sums_of_squares
@@ -25,28 +26,6 @@ def test_equal_to_scipy(seed):
                 np.testing.assert_allclose(found, truth, rtol=1e-12)
 
 
-def rays(pore):
-    """The article's step 1, literally: 26 runs bound the cube, then all voxels of the cube are looked at."""
-    wide = np.pad(pore, 1)
-    steps = [s for s in np.ndindex(3, 3, 3) if s != (1, 1, 1)]
-    radius2 = np.full(pore.shape, -1)
-    for p in np.argwhere(pore):
-        bound = 10**9
-        for step in steps:
-            move = np.array(step) - 1
-            q, count = p + 1, 0
-            while wide[tuple(q)]:
-                q, count = q + move, count + 1
-            bound = min(bound, count * count * int((move**2).sum()))
-        half = int(np.sqrt(bound)) + 1
-        low, high = np.maximum(p + 1 - half, 0), np.minimum(p + 2 + half, wide.shape)
-        part = wide[tuple(slice(a, b) for a, b in zip(low, high, strict=True))]
-        gap = sum((g - c) ** 2 for g, c in zip(np.ogrid[tuple(map(slice, part.shape))], p + 1 - low, strict=True))
-        nearest = gap[~part].min()
-        radius2[tuple(p)] = max(s for s in range(nearest) if is_sum(s))
-    return radius2
-
-
 def is_sum(n):
     """Legendre: every whole number but 4^a (8 b + 7) is a sum of three squares."""
     while n and n % 4 == 0:
@@ -56,10 +35,21 @@ def is_sum(n):
 
 @pytest.mark.parametrize("seed", range(200))
 def test_one_pass_is_the_articles_search(seed):
-    pore = blobs(seed, (10, 9, 8))
+    """PORES.md, test 2: R² and L² of 26 runs and a search of the cube, on 24³ voxels."""
+    pore = blobs(seed)
     reach2 = squared_distance(pore)
-    found = np.where(pore, sums_of_squares(int(reach2.max()))[reach2], -1)
-    np.testing.assert_array_equal(found, rays(pore))
+    radius2, limit2 = article_search(pore)
+    np.testing.assert_array_equal(np.where(pore, sums_of_squares(int(reach2.max()))[reach2], -1), radius2)
+    np.testing.assert_array_equal(np.where(pore, reach2 + 1, -1), limit2)
+
+
+@pytest.mark.parametrize("name", [name for name in ROCKS if name != "berea_400"])
+def test_equal_to_scipy_on_rocks(rock, name):
+    """PORES.md, test 1."""
+    pore = rock(name).pore
+    np.testing.assert_array_equal(
+        squared_distance(pore, "open"), np.rint(ndimage.distance_transform_edt(pore) ** 2).astype(np.int32)
+    )
 
 
 def test_sums_of_three_squares_follow_legendre():

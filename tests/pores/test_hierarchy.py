@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from brute import blobs
 from scipy import ndimage
-from shapes import capsules
+from shapes import capsules, turns
 
 from geofit.pores import RockVolume, maximal_balls, network_permeability, pore_network
 
@@ -47,9 +47,28 @@ def test_pores_are_the_literal_super_balls(seed):
         assert network.pores.radius[network.pore_of[widest] - 1] == pytest.approx(balls.radius[0])
 
 
-@pytest.mark.parametrize("shape", [(30, 9, 9), (30, 8, 30), (20, 20, 20)])
-def test_equal_balls_of_tube_plate_and_cube_are_one_super_ball(shape):
-    assert len(pore_network(RockVolume(np.ones(shape), pore=1, voxel=1), hierarchy="paper").pores) == 1
+def disc():
+    x = np.arange(13) - 6.3
+    return x[:, None] ** 2 + x**2 <= 5.5**2
+
+
+#: Bodies in which many balls are equally large.
+LEVEL = {
+    "square tube": np.ones((20, 9, 9), bool),
+    "round tube": np.repeat(disc()[None], 20, axis=0),
+    "plate": np.ones((20, 8, 20), bool),
+    "cube": np.ones((16, 16, 16), bool),
+    "even cube in rock": np.pad(np.ones((10, 10, 10), bool), 2),
+}
+
+
+@pytest.mark.parametrize("hierarchy", ["paper", "merge-tree"])
+@pytest.mark.parametrize("body", LEVEL)
+def test_equal_balls_are_one_super_ball_however_the_body_is_turned(body, hierarchy):
+    """PORES.md, test 7."""
+    pore = LEVEL[body]
+    for turned in turns(pore):
+        assert len(pore_network(RockVolume(turned, pore=True, voxel=1), hierarchy=hierarchy).pores) == 1
 
 
 def test_two_bulbs_apart_are_two_super_balls_with_a_throat():

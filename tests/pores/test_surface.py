@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from geofit.implicit.field import Field
 from geofit.pores import RockVolume, VolumeError, pore_network, pore_surface
@@ -51,26 +49,6 @@ def test_boxes_bound_their_values(berea):
     inside = body.value((lower + rng.random((300, 3)) * (upper - lower)) * berea[0].unit)
     assert (inside >= low - 1e-12).all()
     assert (inside <= high + 1e-12).all()
-
-
-@settings(max_examples=1000, deadline=None)
-@given(st.floats(0.6, 1.6), st.floats(8, 40))
-def test_the_blend_stays_between_the_union_and_its_bound(gap, kappa):
-    """Never inside the union of two balls, and outside it by no more than R (sqrt(1 + ln 2 / kappa) - 1)."""
-    from geofit.implicit.blobs import Metaballs
-    from geofit.implicit.kernels import potential
-
-    centres = np.array([[0.0, 0, 0], [gap, 0, 0]])
-    field = Metaballs(
-        centres, np.eye(3) * np.full((2, 1, 1), np.sqrt(kappa)), np.full(2, np.exp(kappa)), potential("blinn"), 1.0
-    )
-    directions = np.random.default_rng(0).normal(size=(200, 3))
-    directions /= np.linalg.norm(directions, axis=1)[:, None]
-    assert (field.value(0.999 * directions) < 0).all()
-    outer = np.sqrt(1 + np.log(2) / kappa) + 1e-6
-    far = outer * directions
-    far = far[np.linalg.norm(far - centres[1], axis=1) > outer]
-    assert (field.value(far) > 0).all()
 
 
 def test_wrong_parameters_are_errors(berea):
