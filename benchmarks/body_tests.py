@@ -48,6 +48,7 @@ T11 closed and manifold meshes
 T12 vertices and normals
     implicit/test_isosurface.py::test_vertices_are_on_the_surface_and_normals_are_those_of_the_body
 T13 contacts are met
+    bodies/test_contacts.py::test_contacts_are_met_by_both_kernels
     bodies/test_contacts.py::test_contacts_and_normals_are_met_at_map_coordinates
     bodies/test_fit.py::test_thousands_of_contacts_are_met_and_every_sample_keeps_its_side
 T14 drilled bodies
@@ -128,7 +129,6 @@ T37 determinism
 """
 #: Where a test asks for less than the method, and what was measured of the rest.
 SHORT = {
-    "T13": "kernel r^3 only: r is not offered",
     "T32": "the test asks less of the horn at 5 planes and of the fork: see [Planted bodies](bodies.md)",
 }
 
