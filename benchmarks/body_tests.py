@@ -48,6 +48,7 @@ T11 closed and manifold meshes
 T12 vertices and normals
     implicit/test_isosurface.py::test_vertices_are_on_the_surface_and_normals_are_those_of_the_body
 T13 contacts are met
+    bodies/test_contacts.py::test_contacts_are_met_by_both_kernels
     bodies/test_contacts.py::test_contacts_and_normals_are_met_at_map_coordinates
     bodies/test_fit.py::test_thousands_of_contacts_are_met_and_every_sample_keeps_its_side
 T14 drilled bodies
@@ -60,6 +61,7 @@ T16 Muraki's fit finds planted balls
     implicit/test_muraki.py::test_identical_halves_are_a_saddle_and_those_apart_are_not
 T17 Muraki's fit of other shapes
     implicit/test_muraki.py::test_energy_falls_with_every_split
+    implicit/test_muraki.py::test_sixty_four_balls_each_lower_the_energy
     implicit/test_muraki.py::test_the_few_balls_tried_are_about_as_good_as_all
 T18 C2
     implicit/test_grid.py::test_value_gradient_and_hessian_do_not_jump_at_cell_faces_but_the_third_derivative_does
@@ -78,10 +80,12 @@ T23 collapse by curvature
 T24 unit speed
     morphing/test_levelset.py::test_unit_speed_expands_a_sphere_and_gives_its_volume_back
     morphing/test_levelset.py::test_a_block_grows_rounded_corners
-T25 notched disc
+T25 notched disc and sphere
     morphing/test_transport.py::test_a_notched_disc_keeps_its_area_over_one_turn
+    morphing/test_transport.py::test_a_notched_sphere_keeps_its_volume_over_one_turn
 T26 ball to ring: when the hole opens
     morphing/test_levelset.py::test_a_ball_becomes_a_ring_once_and_when_it_has_to
+    morphing/test_levelset.py::test_the_hole_opens_within_a_percent_of_its_time
     morphing/test_morph.py::test_the_hole_opens_once_and_when_it_has_to
 T27 ball to ring: its end
     morphing/test_levelset.py::test_the_end_is_the_ring
@@ -125,10 +129,6 @@ T37 determinism
 """
 #: Where a test asks for less than the method, and what was measured of the rest.
 SHORT = {
-    "T13": "kernel r^3 only: r is not offered",
-    "T17": "12 balls at most in the test, not 64",
-    "T25": "the disc; the sphere of 100^3 cells is not run",
-    "T26": "arrival mode within 1 % of s; t* by level sets within the two cells of its test",
     "T32": "the test asks less of the horn at 5 planes and of the fork: see [Planted bodies](bodies.md)",
 }
 

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.bodies.kernels import gram, sweep
-from geofit.bodies.rbf import NONE, Rbf, Saddle
+from geofit.bodies.kernels import CUBIC, gram, sweep
+from geofit.bodies.rbf import DRIFTS, NONE, Rbf, Saddle
 from geofit.data.errors import FitError
 from geofit.data.messages import message
 
@@ -78,7 +78,7 @@ def fit_active(
     oriented: Floats,
     normals: Floats,
     samples: SidedSamples,
-    reach: float = 0.0,
+    reach: float = CUBIC,
     most: int = ROUNDS,
     partial: bool = False,
 ) -> ActiveFit:
@@ -93,7 +93,7 @@ def fit_active(
     samples : Samples
         Inequalities; none may coincide with a contact.
     reach : float
-        Radius of the compact kernel; 0 for r^3 with a drift.
+        Radius of the compact kernel; 0 for r^3 or -1 for -r, with a drift.
     most : int
         Rounds at most.
     partial : bool
@@ -104,13 +104,13 @@ def fit_active(
     FitError
         If the conditions leave the field free, or no field satisfies them.
     """
-    if reach == 0.0 and not fixes_trend(points, oriented):
+    if reach == CUBIC and not fixes_trend(points, oriented):
         return _exchange(points, values, oriented, normals, samples)
     base = Saddle(points, oriented, reach)
     field = base.interpolate(values, normals)
     lack = samples.bound - samples.side * field.value(samples.xyz)
     candidates, pull = np.zeros(0, np.int64), np.zeros(0)
-    columns = np.zeros((len(points) + 3 * len(oriented) + 10 * (reach == 0.0), 0))
+    columns = np.zeros((len(points) + 3 * len(oriented) + DRIFTS.get(reach, (0, 0))[0], 0))
     matrix, forced = np.zeros((0, 0)), np.zeros(0, bool)
     rbf, system, active = field, base, candidates
     for rounds in range(1, most + 1):

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.bodies.active import SidedSamples, farthest_apart, fit_active
-from geofit.bodies.kernels import blend
+from geofit.bodies.kernels import CUBIC, blend
 from geofit.bodies.rbf import Rbf
 
 __all__ = ["Blend", "BlendFit", "BlendPart", "fit_blend"]
@@ -100,7 +100,12 @@ class BlendFit:
 
 
 def fit_blend(
-    points: Floats, oriented: NDArray[np.bool_], normals: Floats, samples: SidedSamples, corners: Floats
+    points: Floats,
+    oriented: NDArray[np.bool_],
+    normals: Floats,
+    samples: SidedSamples,
+    corners: Floats,
+    kernel: float = CUBIC,
 ) -> BlendFit:
     """Fit a field that is zero at the contacts and keeps every sample on its side, in parts.
 
@@ -116,6 +121,8 @@ def fit_blend(
         Inequalities.
     corners : (c, 3) array
         Places whose box the parts must cover.
+    kernel : float
+        Of the coarse field, see :mod:`geofit.bodies.kernels`.
     """
     rows = np.where(oriented, 4, 1)
     chosen = np.sort(farthest_apart(points, max(50, int(COARSE / rows.mean()))))
@@ -129,6 +136,7 @@ def fit_blend(
         points[own],
         gradient[own],
         samples[some],
+        kernel,
         most=COARSE_ROUNDS,
         partial=True,
     )

@@ -14,6 +14,7 @@ from geofit.bodies.data import BodyData, Prepared, prepare
 from geofit.bodies.field import BodyField
 from geofit.bodies.fitted import BodyRaster, Fitted
 from geofit.bodies.frame import BodyFrame
+from geofit.bodies.kernels import KERNELS, LINEAR
 from geofit.bodies.rbf import Saddle
 from geofit.bodies.region import Region, hole_spacing, region_of
 from geofit.bodies.settings import BodySettings
@@ -68,8 +69,8 @@ def fit_body(
 
     Notes
     -----
-    Radial functions r^3 (Turk and O'Brien, ACM TOG 21(4), 2002) and a drift (:mod:`geofit.bodies.rbf`). Samples give
-    inequalities; those that bind are found by an active set (:mod:`geofit.bodies.active`).
+    Radial functions r^3, or r (Turk and O'Brien, ACM TOG 21(4), 2002), and a drift (:mod:`geofit.bodies.rbf`).
+    Samples give inequalities; those that bind are found by an active set (:mod:`geofit.bodies.active`).
 
     Examples
     --------
@@ -138,6 +139,16 @@ def _solve(
     contacts = frame.to_fit(prepared.contacts)
     oriented = np.asarray(np.isfinite(prepared.normals).all(axis=1))
     slopes = frame.gradient_to_fit(prepared.normals[oriented])
+    kernel = KERNELS[settings.kernel]
+    if kernel == LINEAR and len(slopes):
+        raise FitError(
+            message(
+                "bodies.kernel-without-slope",
+                "{count} contacts have a normal, and a field of the kernel r has no slope at its contacts. Choose the "
+                "kernel r^3, or leave the normals out.",
+                count=len(slopes),
+            )
+        )
     xyz = frame.to_fit(np.concatenate([prepared.inside, outside]))
     side = np.concatenate([-np.ones(len(prepared.inside)), np.ones(len(outside))])
     near = cKDTree(contacts).query(xyz)[0] * frame.size if len(xyz) else np.zeros(0)
@@ -147,9 +158,9 @@ def _solve(
         from geofit.bodies.blend import fit_blend
 
         corners = np.array(np.meshgrid(*zip(region.lower, region.upper, strict=True))).reshape(3, -1).T
-        blend = fit_blend(contacts, oriented, slopes, samples, frame.to_fit(corners))
+        blend = fit_blend(contacts, oriented, slopes, samples, frame.to_fit(corners), kernel)
         return blend.field, None, blend.active, blend.conditions, blend.rounds
-    fit = fit_active(contacts, np.zeros(len(contacts)), contacts[oriented], slopes, samples)
+    fit = fit_active(contacts, np.zeros(len(contacts)), contacts[oriented], slopes, samples, kernel)
     conditions = len(contacts) + 3 * int(oriented.sum()) + len(fit.active)
     return fit.rbf, fit.system, len(fit.active), conditions, fit.rounds
 

@@ -1,10 +1,11 @@
 """Sums of a kernel and of its derivatives over many centres: the compiled loops of the body's field.
 
-Two kernels: r^3, and where a field is corrected locally, Wendland's compact C2 function of radius R
+Three kernels: r^3; -r; and where a field is corrected locally, Wendland's compact C2 function of radius R
 (Adv. Comput. Math. 4, 1995), (1 - q)^4 (4 q + 1) with q = r / R, which is as smooth as r^3 at its centre. r^3 is
-conditionally positive definite of order two, so its field carries a drift (Turk & O'Brien, "Modelling with
-implicit surfaces that interpolate", ACM TOG 21(4), 2002). A weight may act on a value of the kernel or, where a normal
-was measured, on its gradient (Hermite interpolation; Wendland, *Scattered Data Approximation*, ch. 16).
+conditionally positive definite of order two and -r of order one, so their fields carry a drift (Turk & O'Brien,
+"Modelling with implicit surfaces that interpolate", ACM TOG 21(4), 2002). A weight may act on a value of the kernel or,
+where a normal was measured, on its gradient (Hermite interpolation; Wendland, *Scattered Data Approximation*, ch. 16);
+not of -r, which has a kink at its centre.
 With d = x - c, r = |d|, the kernel k(r), first = k' / r and second = first' / r::
 
     value on value        k
@@ -22,16 +23,24 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-__all__ = ["blend", "gradients", "gram", "sweep", "values"]
+__all__ = ["CUBIC", "KERNELS", "LINEAR", "blend", "gradients", "gram", "sweep", "values"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+#: The kernels r^3 and -r, given in place of a compact kernel's radius.
+CUBIC, LINEAR = 0.0, -1.0
+#: The same by their names in the settings.
+KERNELS = {"r3": CUBIC, "r": LINEAR}
+
 
 @njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
 def _radial(square: float, reach: float) -> tuple[float, float, float]:
-    """Return k, first and second of the module's docstring; ``reach`` is R, or 0 for r^3."""
+    """Return k, first and second of the module's docstring; ``reach`` is R, 0 for r^3 or -1 for -r."""
     r = math.sqrt(square)
+    if reach < 0.0:
+        # A kernel adds nothing to the slope at its own centre, as from all sides around it.
+        return -r, -1.0 / r if r > 0.0 else 0.0, 1.0 / (square * r) if r > 0.0 else 0.0
     if reach == 0.0:
         # The limit of d d^T / r at the centre is zero.
         return square * r, 3.0 * r, 3.0 / r if r > 0.0 else 0.0
@@ -178,7 +187,7 @@ def values(x: Floats, centres: Floats, weights: Floats, dipoles: Floats, moments
     dipoles, moments : (k, 3), (k, 3) arrays
         Gradients of kernels and their weights.
     reach : float
-        Radius of the compact kernel; 0 for r^3.
+        Radius of the compact kernel; 0 for r^3 (CUBIC), -1 for -r (LINEAR).
     """
     out = np.zeros(len(x))
     x = np.ascontiguousarray(x)
@@ -240,7 +249,7 @@ def gram(a: Floats, a_gradients: Floats, b: Floats, b_gradients: Floats, reach: 
     a_gradients, b_gradients : (k, 3), (l, 3) arrays
         Places of gradients; each counts for three rows or columns: x, y, z of the first place, then of the second.
     reach : float
-        Radius of the compact kernel; 0 for r^3.
+        Radius of the compact kernel; 0 for r^3 (CUBIC), -1 for -r (LINEAR).
 
     Returns
     -------

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.bodies.active import farthest_apart
 from geofit.bodies.clusters import block_scale, sections_of
+from geofit.bodies.kernels import CUBIC, KERNELS, LINEAR
 from geofit.bodies.rbf import Saddle
 
 if TYPE_CHECKING:
@@ -31,9 +32,10 @@ Floats = NDArray[np.float64]
 #: Contacts and samples that represent a body that was fitted in parts.
 CONTACTS = 500
 SAMPLES = 200
-#: Usual scale of the random field in distances between holes, and how many contacts weigh as much as it; found on
-#: planted bodies (benchmarks/bodies.py).
-USUAL = 0.18
+#: Usual scale of the random field in distances between holes, by kernel, and how many contacts weigh as much as it;
+#: found on planted bodies (benchmarks/bodies.py). A field of kernel r^n spreads as r^(n / 2).
+USUAL = {CUBIC: 0.18, LINEAR: 0.18}
+DEGREES = {CUBIC: 1.5, LINEAR: 0.5}
 TRUST = 30
 #: What makes the scale of outlines come true: a left-out section has a neighbour on each side, as far as two sections
 #: are apart; found on 220 planted bodies on 4 to 12 planes (docs/section_trials.md), judged on thirty others.
@@ -75,7 +77,7 @@ class BodyPosterior:
         parts = [
             x[np.sort(farthest_apart(x, count))] for x, count in ((contacts, CONTACTS), (samples, SAMPLES)) if len(x)
         ]
-        return Saddle(np.concatenate(parts))
+        return Saddle(np.concatenate(parts), reach=KERNELS[self.body.settings.kernel])
 
     @cached_property
     def scale(self) -> float:
@@ -106,7 +108,8 @@ class BodyPosterior:
     def _towards_usual(self, own: float, count: int) -> float:
         """Return a scale found on ``count`` contacts or sections, drawn towards the usual one."""
         spacing = self.body.region.spacing
-        usual = USUAL * spacing / (spacing / self.body.field.frame.size) ** 1.5
+        kernel = KERNELS[self.body.settings.kernel]
+        usual = USUAL[kernel] * spacing / (spacing / self.body.field.frame.size) ** DEGREES[kernel]
         return float(np.exp((count * np.log(max(own, 1e-6 * usual)) + TRUST * np.log(usual)) / (count + TRUST)))
 
     @cached_property

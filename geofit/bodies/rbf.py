@@ -1,10 +1,10 @@
-"""A radial basis function through values and gradients: r^3 with a drift, or a compact correction.
+"""A radial basis function through values and gradients: r^3 or -r with a drift, or a compact correction.
 
 The drift has a free linear part, and a quadratic part whose six coefficients are random: independent, of mean zero,
 their variances about ``CURVED`` in fitted coordinates (a Bayesian drift; Omre, "Bayesian kriging", Math. Geol. 19,
 1987). r^3 alone has no notion of a body: away from the holes its field soon is a plane, and bodies end too early
 between them. With the quadratic part a field that closes like an ellipsoid costs little, and data that show another
-shape win. A shift of the origin changes the linear part only, so it changes nothing.
+shape win. A shift of the origin changes the linear part only, so it changes nothing. The drift of -r is a constant.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.bodies.kernels import gradients, gram, values
+from geofit.bodies.kernels import CUBIC, LINEAR, gradients, gram, values
 from geofit.data.errors import FitError
 from geofit.data.messages import message
 
-__all__ = ["Rbf", "Saddle", "rows_of"]
+__all__ = ["DRIFTS", "Rbf", "Saddle", "rows_of"]
 
 Floats = NDArray[np.float64]
 NONE = np.zeros((0, 3))
@@ -31,6 +31,8 @@ CURVED = 100.0
 FIRST, SECOND = np.triu_indices(3)
 #: Mixed terms occur twice in x^T A x: with twice the variance no direction is preferred.
 VARIANCE = CURVED * np.where(FIRST == SECOND, 1.0, 2.0)
+#: Terms of the drift by kernel, and how many of them are free; compact kernels have none.
+DRIFTS = {CUBIC: (10, 4), LINEAR: (1, 1)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +48,7 @@ class Rbf:
     trend : (10,) array
         Constant, slopes, and the coefficients of xx, xy, xz, yy, yz, zz.
     reach : float
-        Radius of the compact kernel, which has no drift; 0 for r^3.
+        Radius of the compact kernel, which has no drift; 0 for r^3, -1 for -r.
     """
 
     centres: Floats
@@ -77,7 +79,7 @@ class Saddle:
     oriented : (k, 3) array
         Where gradients are given.
     reach : float
-        Radius of the compact kernel; 0 for r^3 with a linear trend.
+        Radius of the compact kernel; 0 for r^3, -1 for -r.
 
     Raises
     ------
@@ -89,8 +91,9 @@ class Saddle:
         from scipy.linalg import get_lapack_funcs
 
         self.points, self.oriented, self.reach = points, oriented, reach
-        side = _trend(points, oriented) if reach == 0.0 else np.zeros((len(points) + 3 * len(oriented), 0))
-        if reach == 0.0 and np.linalg.matrix_rank(side[:, :4], tol=1e-9 * max(len(side), 4)) < 4:
+        self._trends, free = DRIFTS.get(reach, (0, 0))
+        side = _trend(points, oriented)[:, : self._trends]
+        if np.linalg.matrix_rank(side[:, :free], tol=1e-9 * max(len(side), 4)) < free:
             raise FitError(
                 message(
                     "bodies.trend-undetermined",
@@ -99,13 +102,12 @@ class Saddle:
                     count=len(points) + len(oriented),
                 )
             )
-        size, self._trends = side.shape
+        size = len(side)
         matrix = np.zeros((size + self._trends, size + self._trends), order="F")
         matrix[:size, :size] = gram(points, oriented, points, oriented, reach)
         matrix[:size, size:] = side
         matrix[size:, :size] = side.T
-        if self._trends:
-            matrix[size + 4 :, size + 4 :] = -np.diag(1.0 / VARIANCE)
+        matrix[size + free :, size + free :] = -np.diag(1.0 / VARIANCE[: self._trends - free])
         if not len(matrix):
             return
         routines: Any = get_lapack_funcs(("sytrf", "sytrf_lwork"), (matrix,))
@@ -137,12 +139,13 @@ class Saddle:
 
     def _function(self, solution: Floats) -> Rbf:
         n, size = len(self.points), len(self.points) + 3 * len(self.oriented)
-        trend = solution[size:] if self._trends else np.zeros(10)
+        trend = np.zeros(10)
+        trend[: self._trends] = solution[size:]
         moments = solution[n:size].reshape(-1, 3)
         return Rbf(self.points, solution[:n], self.oriented, moments, trend, self.reach)
 
     def rows(self, x: Floats) -> Floats:
-        """Return the rows (m, n + 3k, and 10 of the drift) that give values at x when multiplied with the weights."""
+        """Return the rows (m, n + 3k, and those of the drift) that give values at x from weights."""
         return rows_of(x, self.points, self.oriented, self.reach)
 
     def covariance(self, x: Floats) -> Floats:
@@ -160,7 +163,7 @@ class Saddle:
         parts = []
         for block in np.array_split(x, max(1, len(x) // 2000)):
             rows = self.rows(block)
-            own = 1.0 if self.reach else 0.0
+            own = 0.0 if self.reach in DRIFTS else 1.0
             parts.append(own - np.einsum("ij,ji->i", rows, self.solve_rows(rows)))
         return np.asarray(np.maximum(np.concatenate(parts), 0.0))
 
@@ -182,9 +185,10 @@ class Saddle:
 
 
 def rows_of(x: Floats, points: Floats, oriented: Floats, reach: float) -> Floats:
-    """Return the rows (m, n + 3k, and 10 of the drift where there is one) that give values at x from weights."""
+    """Return the rows (m, n + 3k, and those of the drift where there is one) that give values at x from weights."""
     rows = gram(x, NONE, points, oriented, reach)
-    return rows if reach else np.hstack([rows, _monomials(x)])
+    terms = DRIFTS.get(reach, (0, 0))[0]
+    return np.hstack([rows, _monomials(x)[:, :terms]]) if terms else rows
 
 
 def _trend(points: Floats, oriented: Floats) -> Floats:

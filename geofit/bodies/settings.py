@@ -45,6 +45,9 @@ class BodySettings:
         descent, clockwise seen from above.
     coincidence_distance : float
         Points nearer to each other than this many metres are one point.
+    kernel : {"r3", "r"}
+        Radial function of the field: r^3 is smooth; r follows the data more tightly, has a kink at each contact and
+        takes no normals. On planted bodies those of r were 7 % too small on average.
     dense : int
         Largest number of conditions that are solved at once; more are solved in overlapping parts.
     realizations : int
@@ -73,6 +76,7 @@ class BodySettings:
     dip: float = 0.0
     rake: float = 0.0
     coincidence_distance: float = 1e-6
+    kernel: str = "r3"
     dense: int = 600
     realizations: int = 100
     seed: int = 0
@@ -115,6 +119,17 @@ class BodySettings:
                         least=text.least,
                     )
                 )
+        words = BODY_SETTINGS["kernel"].choices
+        if not isinstance(self.kernel, str) or self.kernel not in words:
+            raise SettingsError(
+                message(
+                    "data.setting-unknown-choice",
+                    "{setting} is {value}; choose one of {words}.",
+                    setting=_named("kernel"),
+                    value=shown(self.kernel),
+                    words=", ".join(map(repr, words)),
+                )
+            )
         if not isinstance(self.closed, bool):
             raise SettingsError(
                 message(

@@ -180,20 +180,20 @@ def changes(
     system = posterior.system
     points = np.concatenate([system.points, every])
     keep = _distinct(points, len(system.points))
-    whole = Saddle(points[keep], system.oriented)
+    whole = Saddle(points[keep], system.oriented, system.reach)
     right = np.zeros((len(whole.points) + 3 * len(system.oriented), drawn.shape[1]))
     right[len(system.points) : len(whole.points)] = drawn[keep[len(system.points) :] - len(system.points)]
     weights = whole.solve(right)
     blocks = np.array_split(places, max(1, len(places) // 2000))
-    tasks = [(block, whole.points, whole.oriented, weights) for block in blocks]
+    tasks = [(block, whole.points, whole.oriented, whole.reach, weights) for block in blocks]
     found = dict(where.run(_kriged, tasks))
     return np.concatenate([found[k] for k in range(len(blocks))])
 
 
-def _kriged(task: tuple[Floats, Floats, Floats, Floats]) -> Floats:
+def _kriged(task: tuple[Floats, Floats, Floats, float, Floats]) -> Floats:
     """Return the values of realizations (m, realizations) at some places, from the weights of what holds them."""
-    places, points, oriented, weights = task
-    return np.asarray(rows_of(places, points, oriented, 0.0) @ weights)
+    places, points, oriented, reach, weights = task
+    return np.asarray(rows_of(places, points, oriented, reach) @ weights)
 
 
 def _guards(body: BodyFit, posterior: BodyPosterior) -> tuple[Floats, Floats, Floats]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,6 +23,7 @@ from geofit.implicit.mesh import TriangleMesh
 if TYPE_CHECKING:
     from geofit.bodies.implicit_body import ImplicitBody
     from geofit.cad.imported import FileShape
+    from geofit.geometry.mesh import Mesh
 
 __all__ = ["SolidReadBack", "read_back_body"]
 
@@ -39,7 +41,8 @@ class SolidReadBack:
 
     ``grade`` is "nurbs" or "triangles". ``volume`` (m3) is that of the solids in the file, ``deviation`` the largest
     distance in metres of the file's faces from the surface of the body, ``sigma`` and ``max_abs`` are of the contacts'
-    distances from the faces (nan for triangles), ``edge_tolerance`` is the largest in the file, metres.
+    distances from the faces (nan without contacts, and for a body that is cut), ``edge_tolerance`` is the largest in
+    the file, metres.
     """
 
     file: str
@@ -73,6 +76,7 @@ def read_back_body(
 
     from geofit.cad.solid_mesh import solid_triangles
     from geofit.cad.step import read_shapes
+    from geofit.geometry.mesh_projection import nearest_on_mesh
     from geofit.geometry.projection import project
 
     # In the product's own coordinates: the body's local ones.
@@ -83,7 +87,7 @@ def read_back_body(
     if trimmed:
         # Places of the faces themselves: beyond its trims a surface is none of the body's.
         places = solid_triangles(shape).vertices
-        measured, residuals = False, np.full(1, np.nan)
+        residuals = np.full(1, np.nan)
         volume = sum(volume_of(solid) for solid in solids)
         free = len(free_edges(shape))
     elif nurbs:
@@ -93,16 +97,17 @@ def read_back_body(
             [p.evaluate((p.domain[0] + t * (p.domain[1] - p.domain[0]))[:, None],
                         (p.domain[2] + t * (p.domain[3] - p.domain[2]))[None]).reshape(-1, 3) for p in patches]
         )  # fmt: skip
-        measured = len(body.contacts) > 0
         residuals = np.full(1, np.nan)
-        if measured:
+        if len(body.contacts):
             residuals = np.abs(project(patches, body.contacts - body.origin).distance)
         volume = sum(volume_of(solid) for solid in solids)
         free = len(free_edges(shape))
     else:
         meshes = [_triangles_of(face) for face in faces]
         places = np.concatenate([mesh.vertices for mesh in meshes])
-        measured, residuals = False, np.full(1, np.nan)
+        residuals = np.full(1, np.nan)
+        if len(body.contacts):
+            residuals = np.abs(nearest_on_mesh(_joined(meshes), body.contacts - body.origin).distance)
         volume = sum(mesh.volume for mesh in meshes)
         free = sum(len(mesh.boundary_edges) for mesh in meshes)
     slope = np.linalg.norm(body.field.gradient(places), axis=1)
@@ -156,18 +161,7 @@ def read_back_body(
                 deviation=deviation,
             ),
         ),
-        Check(
-            "sigma",
-            sigma < epsilon if measured else None,
-            sigma,
-            epsilon,
-            "m",
-            message(
-                "cad.contacts-sigma",
-                "The contacts lie on the faces of the file with sigma {sigma:.3g} m",
-                sigma=sigma,
-            ),
-        ),
+        _sigma_check(sigma, epsilon, nurbs=nurbs, cut=trimmed),
         Check(
             "volume",
             abs(volume / best - 1) <= VOLUME[grade],
@@ -208,6 +202,46 @@ def read_back_body(
         edge_tolerance=edge,
         checks=checks,
     )
+
+
+def _sigma_check(sigma: float, epsilon: float, *, nurbs: bool, cut: bool) -> Check:
+    """Check the contacts' distances from the faces of the file, or say why there are none.
+
+    Triangles cut curves short by what their size makes of it: their sigma is stated, epsilon is not asked of them.
+    """
+    if not math.isnan(sigma):
+        text = (
+            message(
+                "cad.contacts-sigma", "The contacts lie on the faces of the file with sigma {sigma:.3g} m", sigma=sigma
+            )
+            if nurbs
+            else message(
+                "cad.contacts-triangles-sigma",
+                "The contacts lie on the triangles of the file with sigma {sigma:.3g} m: flat triangles cut curves "
+                "short",
+                sigma=sigma,
+            )
+        )
+        return Check("sigma", sigma < epsilon if nurbs else None, sigma, epsilon, "m", text)
+    text = (
+        message(
+            "cad.contacts-of-cut-body", "The body is cut: its contacts are not compared with the faces that are left"
+        )
+        if cut
+        else message("cad.body-without-contacts", "The body has no contacts to compare with the faces of the file")
+    )
+    return Check("sigma", None, sigma, epsilon, "m", text)
+
+
+def _joined(meshes: Sequence[TriangleMesh]) -> Mesh:
+    """Return the triangles of several faces as one mesh without parameters."""
+    from geofit.geometry.mesh import Mesh
+
+    first = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])[:-1]
+    triangles = np.concatenate([mesh.triangles + k for mesh, k in zip(meshes, first.tolist(), strict=True)])
+    patch = np.zeros(len(triangles), np.int64)
+    points = np.concatenate([mesh.vertices for mesh in meshes])
+    return Mesh(points, triangles, patch, np.zeros((len(triangles), 3, 2)), np.zeros(3), ("",))
 
 
 def _place_check(body: ImplicitBody, product: FileShape) -> Check:

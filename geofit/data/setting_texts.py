@@ -305,6 +305,18 @@ BODY_SETTINGS: Mapping[str, SettingText] = {
         "m",
         number="real",
     ),
+    "kernel": SettingText(
+        message("data.setting-kernel", "Kernel"),
+        message(
+            "data.setting-kernel-about",
+            "Radial function of the field. r³ is smooth. r follows the data more tightly, has a kink at each contact "
+            "and takes no normals.",
+        ),
+        choices={
+            "r3": message("data.setting-kernel-cubic", "r³, smooth"),
+            "r": message("data.setting-kernel-linear", "r, tight"),
+        },
+    ),
     "dense": SettingText(
         message("data.setting-dense", "Conditions at once"),
         message(

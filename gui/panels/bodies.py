@@ -183,6 +183,7 @@ class BodiesPanel(QWidget):
         head(self.tr("Fit"))
         add("box", NumbersField(6, rows=3, empty=None, hint=self.tr("of the data")))
         add("coincidence_distance", NumberField(metres))
+        add("kernel", ChoiceField(choices("kernel")))
         add("dense", NumberField(whole=True))
         head(self.tr("Volumes"))
         for name in ("realizations", "seed"):

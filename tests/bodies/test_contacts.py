@@ -12,6 +12,8 @@ from bodies.planted import ORIGIN, SIZE, drilled, ellipsoid
 from geofit.bodies.body import BodyFit
 from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_body
+from geofit.bodies.settings import BodySettings
+from geofit.data.errors import FitError, SettingsError
 
 Floats = NDArray[np.float64]
 
@@ -25,6 +27,34 @@ def bumpy(count: int) -> tuple[Floats, Floats]:
     radius = 500 * (1 + 0.04 * wave)
     normal = unit - 0.04 * (slope - (slope * unit).sum(axis=1, keepdims=True) * unit) / (1 + 0.04 * wave)
     return radius * unit + ORIGIN, normal / np.linalg.norm(normal, axis=1, keepdims=True)
+
+
+@pytest.mark.parametrize("kernel", ["r3", "r"])
+@pytest.mark.parametrize("count", [50, 500, 5000])
+def test_contacts_are_met_by_both_kernels(kernel: str, count: int) -> None:
+    contacts, _ = bumpy(count)
+    body = fit_body(BodyData(contacts, inside=[ORIGIN]), BodySettings(kernel=kernel))
+    assert np.abs(body.distance(contacts)).max() < 1e-8
+    assert body.overview.is_closed
+    assert body.overview.components == 1
+    smooth = 4 / 3 * np.pi * 500**3
+    assert abs(body.overview.volume / smooth - 1) < 0.015
+
+
+def test_the_kernel_r_is_another_body_with_a_spread_and_no_normals() -> None:
+    truth, volume = ellipsoid((0.6, 0.4, 0.3))
+    data = drilled(truth, 3)
+    smooth, tight = (fit_body(data, BodySettings(kernel=kernel)) for kernel in ("r3", "r"))
+    assert tight.accuracy is not None
+    assert tight.accuracy.wrong_side == 0
+    assert 0.8 < tight.overview.volume / (volume * SIZE**3) < smooth.overview.volume / (volume * SIZE**3)
+    volumes = tight.volumes()
+    assert volumes.p10 < volumes.best < volumes.p90
+    contacts, normals = bumpy(50)
+    with pytest.raises(FitError, match="no slope at its contacts"):
+        fit_body(BodyData(contacts, normals=normals), BodySettings(kernel="r"))
+    with pytest.raises(SettingsError, match="Kernel"):
+        BodySettings(kernel="gauss")
 
 
 @pytest.mark.parametrize("count", [50, 500])

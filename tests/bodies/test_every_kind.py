@@ -86,6 +86,7 @@ def test_every_kind_of_body_measures_cuts_and_exports_a_ball(make, centre, withi
     assert above.volume == pytest.approx(below.volume, rel=0.05)
     found = body.write_step(tmp_path / "body.step")
     assert found.passed
+    assert not any("nan" in str(check.text) for check in found.checks)
     assert found.volume == pytest.approx(mesh.volume, rel=0.05)
     assert body.name in repr(body)
     assert len(repr(body)) < 120

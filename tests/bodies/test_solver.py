@@ -7,11 +7,11 @@ import pytest
 
 from geofit.bodies.active import complementarity
 from geofit.bodies.body import BodyFit
-from geofit.bodies.kernels import gradients, gram, values
+from geofit.bodies.kernels import CUBIC, LINEAR, gradients, gram, values
 from geofit.bodies.rbf import Saddle
 
 
-@pytest.mark.parametrize("reach", [0.0, 2.5])
+@pytest.mark.parametrize("reach", [CUBIC, 2.5])
 def test_kernels_against_plain_numpy(reach: float) -> None:
     rng = np.random.default_rng(0)
     x, c, w = rng.normal(size=(7, 3)), rng.normal(size=(5, 3)), rng.normal(size=5)
@@ -39,6 +39,25 @@ def test_kernels_against_plain_numpy(reach: float) -> None:
     whole = gram(c, g, c, g, reach)
     np.testing.assert_allclose(whole, whole.T, atol=1e-12)
     np.testing.assert_allclose(gram(x, x[:0], c, g, reach) @ np.concatenate([w, v.ravel()]), plain(x), atol=1e-6)
+
+
+def test_the_linear_kernel_against_plain_numpy() -> None:
+    rng = np.random.default_rng(0)
+    x, c, w, none = rng.normal(size=(7, 3)), rng.normal(size=(5, 3)), rng.normal(size=5), np.zeros((0, 3))
+    off = x[:, None] - c
+    r = np.linalg.norm(off, axis=2)
+    np.testing.assert_allclose(values(x, c, w, none, none, LINEAR), -r @ w, rtol=1e-12)
+    slope = -(off / r[:, :, None] * w[:, None]).sum(axis=1)
+    np.testing.assert_allclose(gradients(x, c, w, none, none, LINEAR), slope, rtol=1e-12)
+    assert np.isfinite(gradients(c, c, w, none, none, LINEAR)).all()
+    # One value fixes the constant that is its drift.
+    one = Saddle(c[:1], reach=LINEAR).interpolate(np.array([2.5]))
+    np.testing.assert_allclose(one.value(x), 2.5)
+    # Positive variances that grow with the distance from the data, and none at them.
+    system = Saddle(c, reach=LINEAR)
+    assert (system.variance(x) > 0).all()
+    np.testing.assert_allclose(system.variance(c), 0.0, atol=1e-12)
+    np.testing.assert_allclose(system.interpolate(w).value(c), w, atol=1e-12)
 
 
 def test_values_and_gradients_are_met() -> None:

@@ -6,15 +6,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import pyvista
 
 import geofit
 import geofit.implicit as implicit
-from bodies.planted import drilled
+from bodies.planted import ORIGIN, drilled, ellipsoid
 from bodies.shapes import KINDS, horn
 from geofit.bodies.body import BodyFit
 from geofit.bodies.dual import dual_quads
 from geofit.bodies.fit import fit_body
 from geofit.bodies.quads import patched_surface
+from geofit.bodies.settings import BodySettings
 from geofit.cad.faces import explore
 from geofit.cad.solid_mesh import solid_triangles
 from geofit.cad.solid_shapes import patch_solid
@@ -47,6 +49,22 @@ def test_triangles_keep_the_volume(two: BodyFit, tmp_path: Path) -> None:
     assert found.passed
     assert found.grade == "triangles"
     assert found.volume == pytest.approx(two.overview.volume, rel=1e-9)
+    # Contacts lie on the body; flat triangles cut its curves short by less than a cell's sagitta.
+    (sigma,) = (check for check in found.checks if check.name == "sigma")
+    mesh = pyvista.PolyData.from_regular_faces(two.overview.vertices, two.overview.triangles)
+    places = two.contacts - two.origin
+    gaps = np.linalg.norm(mesh.find_closest_cell(places, return_closest_point=True)[1] - places, axis=1)
+    assert sigma.value == pytest.approx(np.sqrt((gaps**2).sum() / (len(gaps) - 1)), rel=1e-6)
+    assert found.max_abs == pytest.approx(gaps.max(), rel=1e-6)
+
+
+def test_the_contacts_of_a_cut_body_are_not_compared_and_no_check_says_nan(tmp_path: Path) -> None:
+    box = (tuple(ORIGIN - 90), (ORIGIN[0], *(ORIGIN[1:] + 90)))
+    body = fit_body(drilled(ellipsoid((0.6, 0.4, 0.3))[0], 0), BodySettings(box=box))
+    for nurbs in (True, False):
+        found = body.write_step(tmp_path / "cut.step", nurbs=nurbs)
+        assert found.passed
+        assert not any("nan" in str(check.text) for check in found.checks)
 
 
 def test_seams_and_deviation(ring: BodyFit) -> None:

@@ -113,6 +113,27 @@ def test_a_ball_becomes_a_ring_once_and_when_it_has_to(opening) -> None:
     assert abs(steps[first].time - TIME) <= 0.04 * TIME
 
 
+def test_the_hole_opens_within_a_percent_of_its_time() -> None:
+    """At 96 cells; the field in the middle says when, within a step."""
+    d_a, d_b, lattice = pair(BALL, TORUS, 96)
+    time, value, shapes = [], [], []
+
+    def each(step: Step) -> None:
+        time.append(step.time)
+        value.append(step.phi[48, 48, 48])
+        if abs(step.time - TIME) < 0.1 * TIME:
+            mesh = implicit.isosurface_of_samples(step.phi, lattice)
+            shapes.append((mesh.components, mesh.euler))
+
+    evolve(d_a, d_b, lattice, until=1.1 * TIME, corridor=corridor(d_a, d_b), each=each)
+    after = int(np.argmax(np.array(value) > 0))
+    opened = np.interp(0.0, value[after - 1 : after + 1], time[after - 1 : after + 1])
+    assert abs(opened - TIME) <= 0.01 * TIME
+    first = shapes.index((1, 0))
+    assert shapes == [(1, 2)] * first + [(1, 0)] * (len(shapes) - first)
+    assert 0 < first < len(shapes)
+
+
 def test_energy_and_symmetric_difference_never_rise(opening) -> None:
     steps = opening[0]
     assert np.diff([step.energy for step in steps]).max() <= 0
