@@ -38,7 +38,7 @@ class RoleGuess:
     """One role of a table and the column that seems to hold it.
 
     ``confidence`` runs from 0 to 1; ``basis`` is what it rests on, and ``reason`` states it; ``others`` are headers of
-    columns that might hold the role as well.
+    columns that might hold the role as well. ``tied`` is true where one of these has the same name and other cells.
     """
 
     role: str
@@ -48,11 +48,17 @@ class RoleGuess:
     reason: Message
     basis: Basis
     others: tuple[str, ...] = ()
+    tied: bool = False
 
     @property
     def stated(self) -> bool:
         """Whether the user named the column."""
         return self.basis == "stated"
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether a person should look: values alone decided, or two columns have one name."""
+        return self.basis == "values" or self.tied
 
 
 def sample_of(table: Table) -> list[int]:
@@ -115,10 +121,11 @@ def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleG
             rivals.append((0.95 * (1.0 - 0.3 * place / len(spellings)) * fit, -place, j, why))
         if not rivals:
             continue
-        rivals.sort(reverse=True)
+        rivals.sort(key=lambda rival: (-rival[0], -rival[1], rival[2]))
         confidence, _, j, why = rivals[0]
         others = tuple(table.header[k] for _, _, k, _ in rivals[1:])
-        found[role] = RoleGuess(role, j, table.header[j], round(confidence, 2), why, "name", others)
+        tied = any(names[k] == names[j] and table.columns[k] != table.columns[j] for _, _, k, _ in rivals[1:])
+        found[role] = RoleGuess(role, j, table.header[j], round(confidence, 2), why, "name", others, tied)
     return found
 
 
@@ -195,7 +202,7 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
         columns[role] = guess.index
         if not guess.stated:
             journal.add(
-                "warning" if guess.basis == "values" else "note",
+                "warning" if guess.doubtful else "note",
                 table.name,
                 taken_as(guess),
                 message(

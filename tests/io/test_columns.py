@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from geofit.data.errors import InputError
-from geofit.io import columns
+from geofit.io import columns, read_points
 from geofit.io.guess import find_columns
 from geofit.io.journal import Journal
 from geofit.io.rows import read_rows
@@ -90,3 +90,16 @@ def test_feet_are_converted_and_warned_of(write):
     assert rows.numbers("z").tolist() == [3 * 0.3048]
     assert rows.numbers("x").tolist() == [1.0]
     assert any("feet" in str(issue.reason) for issue in journal.issues if issue.severity == "warning")
+
+
+def test_of_two_columns_of_one_name_the_first_counts_and_a_warning_names_both(write):
+    found = read_points(write("x,y,z,z\n0,0,1,7\n5,0,2,8\n0,5,3,9\n"))
+    assert next(iter(found.horizons.values())).xyz[:, 2].tolist() == [1, 2, 3]
+    (doubt,) = [issue for issue in found.issues if issue.severity == "warning"]
+    assert doubt.reason.code == "io.column-alternatives"
+    assert "'z (2)'" in str(doubt.reason)
+
+
+def test_two_equal_columns_of_one_name_are_no_warning(write):
+    found = read_points(write("x,y,z,z\n0,0,1,1\n5,0,2,2\n0,5,3,3\n"))
+    assert {issue.severity for issue in found.issues} == {"note"}
