@@ -90,7 +90,7 @@ def _shared(
     if not _may_share(rail_a, rail_b, reach):
         return None
     ends = np.array([0.0, 1.0])
-    on_b, apart_b = _nearest(second, edge_b, _start(rail_b, rail_a[[0, -1]]), rail_a[[0, -1]])
+    _, apart_b = _nearest(second, edge_b, _start(rail_b, rail_a[[0, -1]]), rail_a[[0, -1]])
     on_a, apart_a = _nearest(first, edge_a, _start(rail_a, rail_b[[0, -1]]), rail_b[[0, -1]])
     met = np.concatenate([ends[apart_b <= reach], on_a[apart_a <= reach]])
     if len(met) < 2:
