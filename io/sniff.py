@@ -79,6 +79,12 @@ def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, st
                 message("io.leave-encoding-out", "Leave the encoding out."),
                 file=name,
             ) from None
+    if data[:4] == b"PK\x03\x04" and b"[Content_Types].xml" not in data:
+        raise InputError(
+            message("io.archive-not-text", "This is a ZIP archive or an array of NumPy, not a text table"),
+            message("io.unpack-table", "Unpack it and name the table; rock volumes are read by geofit pores."),
+            file=name,
+        )
     if data[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
         raise InputError(
             message("io.workbook-not-text", "This is a workbook, not a text table"),

@@ -112,6 +112,12 @@ def _at_the_data(a: Accuracy) -> Lamp:
     figures = {"sigma": a.sigma, "epsilon": a.epsilon}
     if a.passed and a.sigma < ROUNDING:
         text = message("data.verdict-exact", "σ < 1e-9 m < ε {epsilon:g} m", epsilon=a.epsilon)
+    elif a.sigma < min(ROUNDING, a.epsilon):
+        text = message(
+            "data.verdict-exact-and-runs-away",
+            "σ < 1e-9 m < ε {epsilon:g} m, but the surface runs far beyond the elevations of its data",
+            epsilon=a.epsilon,
+        )
     elif a.passed:
         text = message("data.verdict-below", "σ {sigma:#.3g} m < ε {epsilon:g} m", **figures)
     elif a.sigma < a.epsilon:
