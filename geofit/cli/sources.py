@@ -24,6 +24,7 @@ def read_source(
     from geofit.data.legible import legible
     from geofit.data.site import Site
     from geofit.io.boundary import read_boundary
+    from geofit.io.crs import require_grid
     from geofit.io.orientations import read_orientations
     from geofit.io.picks import read_points
     from geofit.io.site_file import read_site
@@ -40,6 +41,8 @@ def read_source(
             )
         site = read_site(source)
         return site if area is None else replace(site, boundary=area)
+    crs = columns.get("crs") or ""
+    require_grid(crs, source.name)
     picks = read_points(
         source,
         x=columns.get("x"),
@@ -58,6 +61,7 @@ def read_source(
         name=legible(source.stem),
         horizons=picks.horizons,
         boundary=area,
+        crs=crs,
         issues=(*_like_collars(source, columns), *picks.issues, *listed),
         orientations=dips,
         counts=picks.counts,

@@ -396,6 +396,19 @@ def test_points_in_one_line_leave_no_warning_of_a_library(tmp_path):
     assert "missing from the geological sections" not in done.stderr
 
 
+def test_the_grid_of_a_table_is_in_the_results_and_must_count_in_metres(picks, tmp_path, monkeypatch, capsys):
+    pytest.importorskip("pyproj")
+    for wrong, word in (("EPSG:4326", "not a projected system"), ("EPSG:999999", "unknown")):
+        code, _, told = run(monkeypatch, capsys, "fit", picks, "--crs", wrong, "--out", tmp_path / "out")
+        assert (code, word in told) == (2, True), told
+    code, out, told = run(
+        monkeypatch, capsys, "fit", picks, "--crs", "EPSG:32650", "--dips", "fit", "--out", tmp_path / "out", "--json"
+    )
+    assert code == 0, told
+    assert json.loads(out)["crs"] == "EPSG:32650"
+    assert "dips are to be fitted, but none is measured" in told
+
+
 def test_version_and_help(monkeypatch, capsys):
     import geofit
 
