@@ -214,6 +214,8 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
             )
     if schema.name == "picks":
         _warn_of_constant(table, columns, journal)
+        if "z" in columns and source.measure is None and not guesses["z"].stated:
+            _warn_of_depths(table, columns, journal)
     if source.target and (table.named or source.columns):
         columns |= _geographic(table, columns, journal)
     missing = [role for role in schema.needed if role not in columns]
@@ -291,6 +293,25 @@ def _warn_of_constant(table: Table, columns: Mapping[str, int], journal: Journal
                 "State columns = { z = ... } with the elevation of the horizon.",
             ),
             column=table.header[columns["z"]],
+        )
+
+
+def _warn_of_depths(table: Table, columns: Mapping[str, int], journal: Journal) -> None:
+    """Warn of depths that nobody reads next to an elevation: it may be that of the collar."""
+    for j, header in enumerate(table.header):
+        if j in columns.values() or not any(word in header.casefold() for word in ("depth", "深", "teufe")):
+            continue
+        journal.add(
+            "warning",
+            table.name,
+            message(
+                "io.depths-not-read",
+                "Column '{depth}' is not used: '{column}' is taken as the elevation of the points, not of the collars",
+                depth=Untranslated(header),
+                column=Untranslated(table.header[columns["z"]]),
+            ),
+            message("io.subtract-depths", "Where it is that of the collars, give it less the depth."),
+            column=header,
         )
 
 

@@ -100,6 +100,14 @@ def test_of_two_columns_of_one_name_the_first_counts_and_a_warning_names_both(wr
     assert "'z (2)'" in str(doubt.reason)
 
 
+def test_depths_next_to_the_elevation_of_collars_are_warned_of(write):
+    text = "hole,x,y,z,depth_to_top,horizon\nB1,0,0,200,12,T2\nB2,50,0,201,15,T2\nB3,0,50,202,17,T2\n"
+    (doubt,) = [issue for issue in read_points(write(text)).issues if issue.severity == "warning"]
+    assert doubt.reason.code == "io.depths-not-read"
+    assert doubt.column == "depth_to_top"
+    assert not [issue for issue in read_points(write(text), z="z").issues if issue.severity == "warning"]
+
+
 def test_two_equal_columns_of_one_name_are_no_warning(write):
     found = read_points(write("x,y,z,z\n0,0,1,1\n5,0,2,2\n0,5,3,3\n"))
     assert {issue.severity for issue in found.issues} == {"note"}
