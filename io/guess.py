@@ -27,6 +27,9 @@ SAMPLE = 400
 #: A guess below it is shown but not used.
 USABLE = 0.25
 
+#: Words in the headers of depths.
+DEPTHS = ("depth", "深", "teufe")
+
 #: What a guess rests on.
 Basis = Literal["stated", "name", "place", "values"]
 
@@ -214,8 +217,8 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
             )
     if schema.name == "picks":
         _warn_of_constant(table, columns, journal)
-        if "z" in columns and source.measure is None and not guesses["z"].stated:
-            _warn_of_depths(table, columns, journal)
+        if "z" in columns and source.measure is None:
+            _warn_of_depths(table, columns, guesses["z"], journal)
     if source.target and (table.named or source.columns):
         columns |= _geographic(table, columns, journal)
     missing = [role for role in schema.needed if role not in columns]
@@ -296,11 +299,27 @@ def _warn_of_constant(table: Table, columns: Mapping[str, int], journal: Journal
         )
 
 
-def _warn_of_depths(table: Table, columns: Mapping[str, int], journal: Journal) -> None:
-    """Warn of depths that nobody reads next to an elevation: it may be that of the collar."""
-    for j, header in enumerate(table.header):
-        if j in columns.values() or not any(word in header.casefold() for word in ("depth", "深", "teufe")):
-            continue
+def _warn_of_depths(table: Table, columns: Mapping[str, int], z: RoleGuess, journal: Journal) -> None:
+    """Warn of an elevation that is called a depth, and of depths that nobody reads next to a guessed elevation."""
+    depths = [j for j, name in enumerate(table.header) if any(word in name.casefold() for word in DEPTHS)]
+    if z.index in depths:
+        journal.add(
+            "warning",
+            table.name,
+            message(
+                "io.depth-taken-as-elevation",
+                "Column '{column}' is called a depth and is taken as an elevation, upwards",
+                column=Untranslated(z.column),
+            ),
+            message(
+                "io.state-measure-of-points", 'Give elevations, or state measure = "depth" in a site or mapping file.'
+            ),
+            column=z.column,
+        )
+    elif z.stated:
+        return
+    for j in (j for j in depths if j not in columns.values()):
+        header = table.header[j]
         journal.add(
             "warning",
             table.name,

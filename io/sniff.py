@@ -23,6 +23,8 @@ __all__ = [
 ]
 
 #: In order of preference where several fit equally well; " " represents runs of blanks.
+#: How the first file within a workbook (xlsx, ods) is called.
+WORKBOOK = (b"[Content_Types].xml", b"_rels", b"docProps", b"xl/", b"mimetype")
 SEPARATORS = (";", "\t", ",", "|", " ")
 
 _BOMS = (
@@ -79,7 +81,7 @@ def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, st
                 message("io.leave-encoding-out", "Leave the encoding out."),
                 file=name,
             ) from None
-    if data[:4] == b"PK\x03\x04" and b"[Content_Types].xml" not in data:
+    if data[:4] == b"PK\x03\x04" and not _first_entry(data).startswith(WORKBOOK):
         raise InputError(
             message("io.archive-not-text", "This is a ZIP archive or an array of NumPy, not a text table"),
             message("io.unpack-table", "Unpack it and name the table; rock volumes are read by geofit pores."),
@@ -101,6 +103,11 @@ def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, st
         message("io.save-as-utf8", "Save it as CSV UTF-8, or state its encoding."),
         file=name,
     )
+
+
+def _first_entry(data: bytes) -> bytes:
+    """Return the name of the first file in a ZIP archive (APPNOTE 4.3.7)."""
+    return data[30 : 30 + int.from_bytes(data[26:28], "little")] or WORKBOOK[0]
 
 
 def _candidates(data: bytes) -> Iterator[str]:

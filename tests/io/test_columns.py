@@ -108,6 +108,12 @@ def test_depths_next_to_the_elevation_of_collars_are_warned_of(write):
     assert not [issue for issue in read_points(write(text), z="z").issues if issue.severity == "warning"]
 
 
+def test_a_depth_that_is_named_as_elevation_is_warned_of(write, tmp_path):
+    text = "x,y,depth (m)\n0,0,12\n50,0,15\n0,50,17\n"
+    (doubt,) = [issue for issue in read_points(write(text), z="depth (m)").issues if issue.severity == "warning"]
+    assert doubt.reason.code == "io.depth-taken-as-elevation"
+
+
 def test_two_equal_columns_of_one_name_are_no_warning(write):
     found = read_points(write("x,y,z,z\n0,0,1,1\n5,0,2,2\n0,5,3,3\n"))
     assert {issue.severity for issue in found.issues} == {"note"}
