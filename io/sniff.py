@@ -22,9 +22,9 @@ __all__ = [
     "split_line",
 ]
 
-#: In order of preference where several fit equally well; " " represents runs of blanks.
 #: How the first file within a workbook (xlsx, ods) is called.
 WORKBOOK = (b"[Content_Types].xml", b"_rels", b"docProps", b"xl/", b"mimetype")
+#: In order of preference where several fit equally well; " " represents runs of blanks.
 SEPARATORS = (";", "\t", ",", "|", " ")
 
 _BOMS = (
