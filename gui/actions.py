@@ -46,7 +46,7 @@ _PLAIN: dict[str, _Spec] = {
     "screenshot": (QT_TRANSLATE_NOOP("Actions", "S&creenshot…"), "Ctrl+Shift+P",
                    QT_TRANSLATE_NOOP("Actions", "Picture of the 3D view at print size"), "screenshot"),
     "issues": (QT_TRANSLATE_NOOP("Actions", "Import pro&blems…"), None,
-               QT_TRANSLATE_NOOP("Actions", "Rows that were not used, and why"), ""),
+               QT_TRANSLATE_NOOP("Actions", "Rows that were not used, warnings and notes of the import"), ""),
     "close": (QT_TRANSLATE_NOOP("Actions", "&Close site"), _Key.Close, "", ""),
     "quit": (QT_TRANSLATE_NOOP("Actions", "&Quit"), "Ctrl+Q", "", ""),
     "steps": (QT_TRANSLATE_NOOP("Actions", "All &steps…"), "Ctrl+Alt+Z",

@@ -276,26 +276,29 @@ class Files(QObject):
                     on_done=self._surfaces_read,
                     in_process=True,
                 )
-        errors = sum(issue.severity == "error" for issue in site.issues)
+        errors, doubts = (sum(issue.severity == word for issue in site.issues) for word in ("error", "warning"))
         horizons = plural_message("gui.horizons-count", "{count} horizon", "{count} horizons", count=len(site.horizons))
         holes = plural_message("gui.holes-count", "{count} hole", "{count} holes", count=len(site.holes))
         rows = plural_message("gui.rows-count", "{count} row", "{count} rows", count=errors)
+        warnings = plural_message("gui.warnings-count", "{count} warning", "{count} warnings", count=doubts)
         opened = message(
             "gui.site-opened",
-            "{name}: {horizons}, {rows} not used.",
+            "{name}: {horizons}, {rows} not used, {warnings}.",
             name=Untranslated(site.name),
             horizons=horizons if site.horizons else holes,
             rows=rows,
+            warnings=warnings,
         )
         self.reported.emit(translated(opened))
         _LOG.info(
             message(
                 "gui.log-opened",
-                "Opened {path}: {horizons}, {holes}, {rows} not used",
+                "Opened {path}: {horizons}, {holes}, {rows} not used, {warnings}",
                 path=str(path),
                 horizons=horizons,
                 holes=holes,
                 rows=rows,
+                warnings=warnings,
             )
         )
 

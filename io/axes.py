@@ -19,6 +19,8 @@ Floats = NDArray[np.float64]
 _BINS = 19
 #: Places that are counted together.
 _CHUNK = 1 << 16
+#: Rows are strays beyond this many extents of the others, if they are no more than this share of all.
+STRAY, STRAYS = 3.0, 0.05
 
 #: West, east, south, north of the place where points are expected, metres.
 Region = tuple[float, float, float, float]
@@ -43,7 +45,8 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
     """Reject rows whose x and y look exchanged, and warn of rows far off.
 
     A row looks exchanged when it lies outside ``region`` and would lie inside with x and y swapped. Without a
-    region the rows themselves make one: 20 median distances around their median.
+    region the rows themselves make one: 20 median distances around their median; of the rows outside it, those
+    the few that lie more than three extents of the others away from them are warned of.
 
     Raises
     ------
@@ -88,7 +91,9 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
             message("io.row-axes-exchanged", "x and y appear to be exchanged in this row"),
             message("io.x-is-easting", "x is the easting, y the northing."),
         )
-    if known and off.size:
+    if not known:
+        _warn_of_strays(rows, x, y, off, box)
+    elif off.size:
         i = int(off[0])
         rows.warn(
             i,
@@ -101,6 +106,41 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
                 y=y[i],
             ),
             message("io.check-coordinates", "Check the coordinates and the boundary."),
+        )
+
+
+def _warn_of_strays(rows: Rows, x: Floats, y: Floats, off: NDArray[np.intp], box: Region) -> None:
+    """Warn of the few rows that lie several times the extent of all others away from them."""
+    if not off.size:
+        return
+    middle = (box[0] + box[1]) / 2, (box[2] + box[3]) / 2
+    off = off[np.argsort(np.hypot(x[off] - middle[0], y[off] - middle[1]), kind="stable")]
+    near = _inside(x, y, box) & rows.ok
+    west, east, south, north = x[near].min(), x[near].max(), y[near].min(), y[near].max()
+    few = max(1, int(STRAYS * rows.ok.sum()))
+    for k, i in enumerate(off.tolist()):
+        # Outwards from the crowd: a thin rim widens the extent step by step.
+        extent = max(float(np.hypot(east - west, north - south)), 1.0)
+        away = float(np.hypot(max(west - x[i], x[i] - east, 0.0), max(south - y[i], y[i] - north, 0.0)))
+        if away > STRAY * extent and off.size - k <= few:
+            break
+        west, east, south, north = min(west, x[i]), max(east, x[i]), min(south, y[i]), max(north, y[i])
+    else:
+        return
+    for i in off[k:].tolist():
+        away = float(np.hypot(max(west - x[i], x[i] - east, 0.0), max(south - y[i], y[i] - north, 0.0)))
+        rows.warn(
+            i,
+            "x",
+            message(
+                "io.row-far-from-others",
+                "x = {x:.15g}, y = {y:.15g} lies {distance:.0f} m from the other rows, which cover {extent:.0f} m",
+                x=x[i],
+                y=y[i],
+                distance=away,
+                extent=extent,
+            ),
+            message("io.check-stray-coordinates", "Check its coordinates, or remove the row."),
         )
 
 

@@ -29,7 +29,7 @@ __all__ = ["Boreholes", "DipSign", "IntervalLog", "load_boreholes", "read_boreho
 Floats = NDArray[np.float64]
 DipSign = Literal["down-positive", "down-negative"]
 
-#: Depths of logs are written in centimetres: smaller differences are not difference, metres.
+#: Depths of logs are written in centimetres: smaller differences are none, metres.
 DEPTH_TOLERANCE = 0.005
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -101,6 +102,7 @@ def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Jo
             nearest_name(code, codes, message("data.name-one", "Name one of them.")),
             value=code,
         )
+    _warn_of_case(rule, codes, carrying[0].file, journal)
     found = []
     for log in carrying:
         plain = simplified(log, rule)
@@ -122,6 +124,32 @@ def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Jo
             )
         found.append(_contacts_of(boreholes, plain, rule, journal))
     return PointSet.concatenate(found)
+
+
+def _warn_of_case(rule: ContactRule, codes: Sequence[str], file: str, journal: Journal) -> None:
+    """Warn of codes that differ from those of the rule in case only: they are not used."""
+    stated = {code.casefold() for code in rule.codes}
+    alike = [code for code in codes if code.casefold() in stated and code not in rule.codes]
+    if not alike:
+        return
+    both = "[" + ", ".join(f'"{code}"' for code in (*rule.codes, *alike)) + "]"
+    journal.add(
+        "warning",
+        file,
+        message(
+            "io.code-differs-in-case",
+            "The codes {names} differ from {code} in case only, and do not count as it",
+            names=", ".join(alike),
+            code=Untranslated(rule.label),
+        ),
+        message(
+            "io.list-codes-of-one-bed",
+            "Write {limit} = {codes} where they are one bed.",
+            limit=Untranslated(rule.limit),
+            codes=Untranslated(both),
+        ),
+        value=alike[0],
+    )
 
 
 def _contacts_of(boreholes: Boreholes | LoggedHoles, log: IntervalLog, rule: ContactRule, journal: Journal) -> PointSet:

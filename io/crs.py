@@ -13,7 +13,7 @@ from geofit.data.lengths import LENGTH_UNITS, LengthUnit
 from geofit.data.messages import message
 from geofit.io.extra import need
 
-__all__ = ["WGS84", "is_code", "project_places", "refuse_degrees", "unit_of_grid"]
+__all__ = ["WGS84", "is_code", "project_places", "refuse_degrees", "require_grid", "unit_of_grid"]
 
 Floats = NDArray[np.float64]
 
@@ -113,6 +113,32 @@ def refuse_degrees(crs: str, file: str) -> None:
                 'Project them to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
                 "(geofit fit and geofit import: --crs).",
             ),
+            file=file,
+        )
+
+
+def require_grid(label: str, file: str) -> None:
+    """Refuse a code that names no system, or one of degrees, for a site whose places are metres.
+
+    Raises
+    ------
+    InputError
+        If the code is unknown or counts in degrees; other labels, and any without pyproj, pass.
+    """
+    if not is_code(label):
+        return
+    try:
+        pyproj = need("pyproj", "gis", message("io.need-projection", "Projecting {file}", file=file))
+    except MissingDependencyError:
+        return
+    if _system(pyproj, label, file).is_geographic:
+        raise InputError(
+            message(
+                "io.target-not-projected",
+                "The target '{target}' is not a projected system in metres",
+                target=label,
+            ),
+            message("io.name-site-grid", "Name the grid of the site, such as a UTM zone: EPSG:32650."),
             file=file,
         )
 

@@ -27,6 +27,9 @@ SAMPLE = 400
 #: A guess below it is shown but not used.
 USABLE = 0.25
 
+#: Words in the headers of depths.
+DEPTHS = ("depth", "深", "teufe")
+
 #: What a guess rests on.
 Basis = Literal["stated", "name", "place", "values"]
 
@@ -38,7 +41,7 @@ class RoleGuess:
     """One role of a table and the column that seems to hold it.
 
     ``confidence`` runs from 0 to 1; ``basis`` is what it rests on, and ``reason`` states it; ``others`` are headers of
-    columns that might hold the role as well.
+    columns that might hold the role as well. ``tied`` is true where one of these has the same name and other cells.
     """
 
     role: str
@@ -48,11 +51,17 @@ class RoleGuess:
     reason: Message
     basis: Basis
     others: tuple[str, ...] = ()
+    tied: bool = False
 
     @property
     def stated(self) -> bool:
         """Whether the user named the column."""
         return self.basis == "stated"
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether a person should look: values alone decided, or two columns have one name."""
+        return self.basis == "values" or self.tied
 
 
 def sample_of(table: Table) -> list[int]:
@@ -115,10 +124,11 @@ def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleG
             rivals.append((0.95 * (1.0 - 0.3 * place / len(spellings)) * fit, -place, j, why))
         if not rivals:
             continue
-        rivals.sort(reverse=True)
+        rivals.sort(key=lambda rival: (-rival[0], -rival[1], rival[2]))
         confidence, _, j, why = rivals[0]
         others = tuple(table.header[k] for _, _, k, _ in rivals[1:])
-        found[role] = RoleGuess(role, j, table.header[j], round(confidence, 2), why, "name", others)
+        tied = any(names[k] == names[j] and table.columns[k] != table.columns[j] for _, _, k, _ in rivals[1:])
+        found[role] = RoleGuess(role, j, table.header[j], round(confidence, 2), why, "name", others, tied)
     return found
 
 
@@ -195,7 +205,7 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
         columns[role] = guess.index
         if not guess.stated:
             journal.add(
-                "warning" if guess.basis == "values" else "note",
+                "warning" if guess.doubtful else "note",
                 table.name,
                 taken_as(guess),
                 message(
@@ -207,6 +217,8 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
             )
     if schema.name == "picks":
         _warn_of_constant(table, columns, journal)
+        if "z" in columns and source.measure is None:
+            _warn_of_depths(table, columns, guesses["z"], journal)
     if source.target and (table.named or source.columns):
         columns |= _geographic(table, columns, journal)
     missing = [role for role in schema.needed if role not in columns]
@@ -284,6 +296,41 @@ def _warn_of_constant(table: Table, columns: Mapping[str, int], journal: Journal
                 "State columns = { z = ... } with the elevation of the horizon.",
             ),
             column=table.header[columns["z"]],
+        )
+
+
+def _warn_of_depths(table: Table, columns: Mapping[str, int], z: RoleGuess, journal: Journal) -> None:
+    """Warn of an elevation that is called a depth, and of depths that nobody reads next to a guessed elevation."""
+    depths = [j for j, name in enumerate(table.header) if any(word in name.casefold() for word in DEPTHS)]
+    if z.index in depths:
+        journal.add(
+            "warning",
+            table.name,
+            message(
+                "io.depth-taken-as-elevation",
+                "Column '{column}' is called a depth and is taken as an elevation, upwards",
+                column=Untranslated(z.column),
+            ),
+            message(
+                "io.state-measure-of-points", 'Give elevations, or state measure = "depth" in a site or mapping file.'
+            ),
+            column=z.column,
+        )
+    elif z.stated:
+        return
+    for j in (j for j in depths if j not in columns.values()):
+        header = table.header[j]
+        journal.add(
+            "warning",
+            table.name,
+            message(
+                "io.depths-not-read",
+                "Column '{depth}' is not used: '{column}' is taken as the elevation of the points, not of the collars",
+                depth=Untranslated(header),
+                column=Untranslated(table.header[columns["z"]]),
+            ),
+            message("io.subtract-depths", "Where it is that of the collars, give it less the depth."),
+            column=header,
         )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.labels import Labels
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.io.rows import Rows
 
@@ -18,7 +19,7 @@ __all__ = ["HorizonNames"]
 class HorizonNames:
     """The horizons of a site; without any, every name that occurs in the data makes one.
 
-    Case and outer blanks do not matter.
+    Case and outer blanks do not matter; the first spelling that is met names the horizon.
     """
 
     def __init__(self, names: Sequence[str] = ()) -> None:
@@ -27,7 +28,7 @@ class HorizonNames:
 
     def match(self, text: str) -> str | None:
         """Return the horizon that a cell or layer names; None if the site has no such horizon."""
-        return self._known.get(text.casefold()) if self._known else text
+        return self._known.get(text.casefold()) if self.names else self._known.setdefault(text.casefold(), text)
 
     def of(self, rows: Rows, role: str = "horizon") -> list[str]:
         """Return the horizon of each row; rows without one, or with an unknown one, are rejected."""
@@ -38,7 +39,19 @@ class HorizonNames:
         """Return the horizon of each row, as :meth:`of`, as codes."""
         cells = rows.labels(role)
         named = cells.renamed([self.match(cell) or cell for cell in cells.table])
-        if self._known and not set(self.names).issuperset(named.table):
+        if not self.names and (merged := sorted(set(cells.table) - set(named.table))):
+            rows.journal.add(
+                "note",
+                rows.file,
+                message(
+                    "io.horizon-names-merged",
+                    "Names that differ in case only are one horizon: {names}",
+                    names=", ".join(f"{name} = {self.match(name)}" for name in merged),
+                ),
+                message("io.rename-other-horizon", "Rename one where they are two."),
+                column=rows.table.header[rows.columns[role]],
+            )
+        if self.names and not set(self.names).issuperset(named.table):
             texts = [named.table[code] for code in named.codes.tolist()]
             rows.require_known(role, texts, self.names, "site file's [[horizon]] list")
         return named

@@ -147,11 +147,13 @@ def build_site(
         reader.mappings = load_mappings(path.parent / mapping)
     horizons = [_horizon(reader, table) for table in reader.tables(top, "horizon")]
     names = HorizonNames([horizon.name for horizon in horizons])
-    if len(set(map(str.casefold, names.names))) < len(horizons):
+    folded = [name.casefold() for name in names.names]
+    if repeated := [name for k, name in enumerate(names.names) if folded[k] in folded[:k]]:
         raise reader.fail(
-            message("io.horizon-name-repeated", "Two [[horizon]] tables have one name"),
+            message("io.horizon-name-repeated", "Two [[horizon]] tables have one name (case does not count)"),
             message("io.give-each-own-name", "Give each its own."),
             "name",
+            repeated[0],
         )
 
     title = read_title_block(reader, top)

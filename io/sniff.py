@@ -22,6 +22,8 @@ __all__ = [
     "split_line",
 ]
 
+#: How the first file within a workbook (xlsx, ods) is called.
+WORKBOOK = (b"[Content_Types].xml", b"_rels", b"docProps", b"xl/", b"mimetype")
 #: In order of preference where several fit equally well; " " represents runs of blanks.
 SEPARATORS = (";", "\t", ",", "|", " ")
 
@@ -79,6 +81,12 @@ def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, st
                 message("io.leave-encoding-out", "Leave the encoding out."),
                 file=name,
             ) from None
+    if data[:4] == b"PK\x03\x04" and not _first_entry(data).startswith(WORKBOOK):
+        raise InputError(
+            message("io.archive-not-text", "This is a ZIP archive or an array of NumPy, not a text table"),
+            message("io.unpack-table", "Unpack it and name the table; rock volumes are read by geofit pores."),
+            file=name,
+        )
     if data[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
         raise InputError(
             message("io.workbook-not-text", "This is a workbook, not a text table"),
@@ -95,6 +103,11 @@ def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, st
         message("io.save-as-utf8", "Save it as CSV UTF-8, or state its encoding."),
         file=name,
     )
+
+
+def _first_entry(data: bytes) -> bytes:
+    """Return the name of the first file in a ZIP archive (APPNOTE 4.3.7)."""
+    return data[30 : 30 + int.from_bytes(data[26:28], "little")] or WORKBOOK[0]
 
 
 def _candidates(data: bytes) -> Iterator[str]:

@@ -59,7 +59,7 @@ class Source:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))
-        name = self.name or legible(self.path.name)
+        name = self.name or legible(self.path.name) or legible(str(self.path))
         mark = f" [{self.table}]" if self.table else ""
         object.__setattr__(self, "name", name if name.endswith(mark) else name + mark)
         words = {"tab": "\t", "space": " ", "comma": ",", "semicolon": ";", "\\t": "\t"}

@@ -137,7 +137,7 @@ def read_stations(
                 "depth",
                 message(
                     "io.hole-without-first-station",
-                    "Hole {hole} has no station at depth 0; it is taken as straight down to its first station",
+                    "Hole {hole} has no station at depth 0; it is straight from the collar to its first station",
                     hole=hole,
                 ),
                 message("io.add-attitude-collar", "Add the attitude at the collar."),

@@ -73,7 +73,7 @@ def shape_and_type(
         raise InputError(
             message(
                 "io.raw-size-differs",
-                "the file has {size} bytes, but {shape} voxels of {bytes} bytes each need {need}",
+                "the file has {size} bytes; {shape} voxels, {bytes} byte(s) each, need {need}",
                 size=size,
                 shape=" x ".join(map(str, found)),
                 bytes=stored.itemsize,

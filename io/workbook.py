@@ -192,6 +192,8 @@ def _text(value: Any) -> str:
         return str(value)
     if isinstance(value, (int, float)):
         return number_text(float(value))
+    if isinstance(value, datetime.datetime) and value.time() == datetime.time():
+        return value.date().isoformat()  # a sheet stores every day as its midnight
     if isinstance(value, (datetime.date, datetime.time)):
         return value.isoformat()
     return str(value).strip()

@@ -131,6 +131,16 @@ def from_intervals(
             )
         )
     issues: list[BodyIssue] = []
+    folded = {code.casefold() for code in wanted}
+    if alike := sorted(code for code in counts if code.casefold() in folded and code not in wanted):
+        text = message(
+            "bodies.code-differs-in-case",
+            "Codes that differ from {codes} in case only count as outside the body: {alike}. Name them too where they "
+            "are the same rock",
+            codes=", ".join(sorted(wanted)),
+            alike=", ".join(f"{code} ({counts[code]})" for code in alike),
+        )
+        issues.append(BodyIssue("interval", text))
     rows: dict[str, list[tuple[float, float, bool]]] = {}
     paths: dict[str, _Path] = {}
     for number, source in enumerate(sources, 1):

@@ -72,6 +72,8 @@ def body(
             run = run_body(drawn.data, out, name=name, settings=settings, progress=progress, signed=signed)
         else:
             holes = _read(source, survey, intervals or [])
+            if not code:
+                raise _no_code(source, holes)
             print_issues(holes.issues)
             print_counts(holes.counts)
             title = getattr(holes, "title", None)
@@ -144,6 +146,22 @@ def _read(source: Path, survey: Path | None, intervals: list[Path]) -> Boreholes
     from geofit.io.site_file import load_site
 
     return load_site(source)
+
+
+def _no_code(source: Path, holes: Boreholes | Site) -> InputError:
+    """Return what to say where no code is named: the codes that there are."""
+    from collections import Counter
+
+    from geofit.io.boreholes import Boreholes
+
+    campaigns = (holes,) if isinstance(holes, Boreholes) else holes.boreholes
+    counts = Counter(str(code) for campaign in campaigns for log in campaign.logs for code in log.code)
+    frequent = ", ".join(f"{code} ({count})" for code, count in counts.most_common(12))
+    return InputError(
+        message("cli.code-missing", "No code is named whose intervals lie in the body"),
+        message("cli.name-code", "Name it with --code. The most frequent are: {codes}.", codes=frequent),
+        file=str(source),
+    )
 
 
 def _print_issues(run: BodyRun) -> None:

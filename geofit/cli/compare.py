@@ -48,10 +48,11 @@ def compare(
         rows = []
         for name, one in found.items():
             change, test = one.change, one.test
+            rms = f"{test.rms:.2f}" if test.judged else "–"
             rows.append(
                 (
                     name, f"{change.mean:+.3f}", f"{change.largest:+.2f}", f"{change.share:.0%}",
-                    str(len(test.contacts)), f"{test.inside} of {len(test.judged)}", f"{test.rms:.2f}",
+                    str(len(test.contacts)), f"{test.inside} of {len(test.judged)}", rms,
                 )
             )  # fmt: skip
         print_table(header, rows)

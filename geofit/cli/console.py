@@ -204,7 +204,7 @@ def print_results(results: Sequence[HorizonResult]) -> None:
         say(f"{r.name}: {r.verdict.text}")
         failed = [c for c in (*a.checks, *(r.read_back.checks if r.read_back else ())) if c.passed is False]
         for check in failed:
-            say(f"{r.name}: check '{check.name}' does not hold: {check.text}")
+            say(f"{r.name}: check '{check.name}' fails: {check.text}")
         partition = r.surface.partition
         lost = () if partition is None or partition.reason.severity == "info" else (partition.reason,)
         for note in gravest_first((*lost, *a.notes)):
@@ -252,10 +252,12 @@ def print_issues(issues: Sequence[ImportIssue], where: str = "") -> None:
     for issue in grave:
         kinds.setdefault((issue.severity, issue.file, issue.reason.code), []).append(issue)
     ordered = sorted(kinds.values(), key=lambda alike: (alike[0].severity != "error", len(alike)))
-    for alike in ordered[:FIRST_ISSUES]:
-        say("  " + _sentence(alike[0]) + (f" ({len(alike) - 1} more like it)" if len(alike) > 1 else ""))
-    if rest := sum(map(len, ordered[FIRST_ISSUES:])):
-        say(f"  ... and {rest} more.")
+    for severity in ("error", "warning"):
+        shown = [alike for alike in ordered if alike[0].severity == severity]
+        for alike in shown[:FIRST_ISSUES]:
+            say("  " + _sentence(alike[0]) + (f" ({len(alike) - 1} more like it)" if len(alike) > 1 else ""))
+        if rest := sum(map(len, shown[FIRST_ISSUES:])):
+            say(f"  ... and {rest} more {severity}{'s' * (rest != 1)}.")
 
 
 def _sentence(issue: ImportIssue) -> str:

@@ -25,7 +25,7 @@ BODY = "ORE"
 def demo(
     out: Out = Path("demo_out"),
     robust: Annotated[
-        bool, typer.Option("--robust", help="Peripheral points that their neighbours deny take no part.")
+        bool, typer.Option("--robust", help="Peripheral points that their neighbours contradict take no part.")
     ] = False,
     as_json: Json = False,
 ) -> int:

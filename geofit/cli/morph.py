@@ -135,7 +135,7 @@ def _print(run: MorphRun) -> None:
     print_table((*head, "drift, m3"), rows)
     for change in run.morph.changes:
         say(
-            f"Gain {change.gain:.6g} m3, loss {change.loss:.6g} m3, net {change.net:.6g} m3"
+            f"Gain {change.gain + 0.0:.6g} m3, loss {change.loss + 0.0:.6g} m3, net {change.net + 0.0:.6g} m3"
             + (f" ± {change.net_sd:.3g}" if run.morph.sd else "")
             + (f", {change.rate:.6g} m3 a year" if run.morph.dates else "")
         )

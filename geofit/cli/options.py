@@ -46,7 +46,7 @@ class FrameChoice(StrEnum):
     SECTIONS = "sections"
 
 
-Out = Annotated[Path, typer.Option(help="Folder for the results; made if it is not there.")]
+Out = Annotated[Path, typer.Option(help="Folder for the results; created if missing.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the results as JSON on stdout instead of a table.")]
 Report = Annotated[bool, typer.Option("--report", help="Write NAME_report.html and NAME_report.pdf, too.")]
 Lang = Annotated[LanguageCode, typer.Option(help="Language of the report: English or Chinese.")]

@@ -10,7 +10,7 @@ from geofit.data.errors import InputError
 from geofit.data.messages import Untranslated, message
 
 if TYPE_CHECKING:
-    from geofit.data.site import Site
+    from geofit.data.site import ImportIssue, Site
 
 __all__ = ["pick", "read_source"]
 
@@ -24,6 +24,7 @@ def read_source(
     from geofit.data.legible import legible
     from geofit.data.site import Site
     from geofit.io.boundary import read_boundary
+    from geofit.io.crs import require_grid
     from geofit.io.orientations import read_orientations
     from geofit.io.picks import read_points
     from geofit.io.site_file import read_site
@@ -40,6 +41,8 @@ def read_source(
             )
         site = read_site(source)
         return site if area is None else replace(site, boundary=area)
+    crs = columns.get("crs") or ""
+    require_grid(crs, source.name)
     picks = read_points(
         source,
         x=columns.get("x"),
@@ -58,10 +61,37 @@ def read_source(
         name=legible(source.stem),
         horizons=picks.horizons,
         boundary=area,
-        issues=(*picks.issues, *listed),
+        crs=crs,
+        issues=(*_like_collars(source, columns), *picks.issues, *listed),
         orientations=dips,
         counts=picks.counts,
         inputs=picks.inputs,
+    )
+
+
+def _like_collars(source: Path, columns: Mapping[str, str | None]) -> tuple[ImportIssue, ...]:
+    """Warn of a table of collars whose elevations nobody asked for: they are those of the ground, of no horizon."""
+    from geofit.data.site import ImportIssue
+    from geofit.io.preview import preview_file
+
+    if columns.get("z") is not None or [one.kind for one in preview_file(source)] != ["collar"]:
+        return ()
+    return (
+        ImportIssue(
+            source.name,
+            0,
+            "",
+            "",
+            "warning",
+            message(
+                "cli.points-look-like-collars",
+                "The table looks like collars: their elevations are those of the ground, not of a horizon",
+            ),
+            message(
+                "cli.import-collars",
+                "Bind collars and logs with geofit import, or name the column of the elevations with --z.",
+            ),
+        ),
     )
 
 

@@ -15,6 +15,7 @@ from gettext import NullTranslations
 from string import Formatter
 from typing import Any, Literal
 
+from geofit.data.rounding import rounded_metres
 from geofit.data.terms import TERMS
 
 __all__ = [
@@ -146,12 +147,25 @@ def render(value: Any, catalogue: NullTranslations) -> Any:
             template = catalogue.ngettext(value.template, value.plural, int(value.params["count"]))
         # A text without parameters may show braces, as of a TOML table.
         fields = {name: render(param, catalogue) for name, param in value.params.items()}
-        return template.format(**fields) if fields else template
+        if not fields:
+            return template
+        return _WITH_LENGTHS.vformat(template, (), fields) if _LENGTH in template else template.format(**fields)
     if isinstance(value, tuple) and value and all(isinstance(item, (Message, str)) for item in value):
         return _joined([str(render(item, catalogue)) for item in value], catalogue)
     if isinstance(value, str):
         return catalogue.gettext(value) if value in TERMS and not isinstance(value, Untranslated) else str(value)
     return value
+
+
+class _WithLengths(Formatter):
+    """``str.format`` that knows one more format: ``{sigma:length}``, digits as :func:`rounded_metres` chooses them."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        return rounded_metres(value) if format_spec == "length" else str(super().format_field(value, format_spec))
+
+
+_LENGTH = ":length}"
+_WITH_LENGTHS = _WithLengths()
 
 
 def _joined(texts: list[str], catalogue: NullTranslations) -> str:

@@ -129,7 +129,7 @@ def _require(name: str, value: Any, text: SettingText) -> None:
         if text.unit == "°":
             unit = message("data.setting-unit-degrees", "degrees")
         if not text.unit:
-            unit = message("data.setting-auto-or-value", "the auto value's unit, or the word 'auto'")
+            unit = message("data.setting-auto-or-value", "or the word 'auto'")
         refused = message(
             "data.setting-not-positive",
             "{setting} is {value}; a finite number above 0 is needed ({unit}).",

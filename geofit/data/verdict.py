@@ -112,16 +112,22 @@ def _at_the_data(a: Accuracy) -> Lamp:
     figures = {"sigma": a.sigma, "epsilon": a.epsilon}
     if a.passed and a.sigma < ROUNDING:
         text = message("data.verdict-exact", "σ < 1e-9 m < ε {epsilon:g} m", epsilon=a.epsilon)
+    elif a.sigma < min(ROUNDING, a.epsilon):
+        text = message(
+            "data.verdict-exact-and-runs-away",
+            "σ < 1e-9 m < ε {epsilon:g} m, but the surface runs far beyond the elevations of its data",
+            epsilon=a.epsilon,
+        )
     elif a.passed:
-        text = message("data.verdict-below", "σ {sigma:#.3g} m < ε {epsilon:g} m", **figures)
+        text = message("data.verdict-below", "σ {sigma:length} m < ε {epsilon:g} m", **figures)
     elif a.sigma < a.epsilon:
         text = message(
             "data.verdict-runs-away",
-            "σ {sigma:#.3g} m < ε {epsilon:g} m, but the surface runs far beyond the elevations of its data",
+            "σ {sigma:length} m < ε {epsilon:g} m, but the surface runs far beyond the elevations of its data",
             **figures,
         )
     else:
-        text = message("data.verdict-not-below", "σ {sigma:#.3g} m ≥ ε {epsilon:g} m", **figures)
+        text = message("data.verdict-not-below", "σ {sigma:length} m ≥ ε {epsilon:g} m", **figures)
     return Lamp(message("data.verdict-data", "At the data"), "pass" if a.passed else "fail", text)
 
 
@@ -170,7 +176,7 @@ def _error(rms: float, scheme: Scheme, epsilon: float) -> tuple[Level, Message]:
     level: Level = "pass" if ratio <= 1 else "warning" if ratio < FAR else "fail"
     text = message(
         "data.verdict-left-out-error",
-        "left-out error {error:#.3g} m = {ratio:.1f} ε ({scheme})",
+        "left-out error {error:length} m = {ratio:.1f} ε ({scheme})",
         error=rms,
         ratio=ratio,
         scheme=_SCHEMES[scheme],

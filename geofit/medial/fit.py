@@ -165,7 +165,12 @@ def metaballs(
         raise SettingsError(
             message(
                 "medial.settings-unusable",
-                "Give a cost and a stiffness above 0, a share above 0 and at most 1, and at least 1 ball.",
+                "Give a cost and a stiffness above 0, a share above 0 and at most 1, and at least 1 ball; given: cost "
+                "{cost:g}, stiffness {stiffness:g}, share {share:g}, balls {balls}.",
+                cost=cost,
+                stiffness=stiffness,
+                share=share,
+                balls=message("medial.any-number", "as many as it takes") if max_balls is None else max_balls,
             )
         )
     tell(progress, "medial axis", 0.0)

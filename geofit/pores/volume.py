@@ -215,7 +215,7 @@ def voxel_edges(voxel: float | Collection[float] | None) -> tuple[float, float, 
         raise VolumeError(
             message(
                 "pores.voxel-size-missing",
-                "The size of a voxel is missing. State its edge length in metres, for example voxel=5e-6.",
+                "The size of a voxel is missing. State its edge length in metres: voxel=5e-6 (--voxel 5e-6).",
             )
         )
     edges = np.asarray(list(voxel) if isinstance(voxel, Collection) else [voxel] * 3, dtype=float)

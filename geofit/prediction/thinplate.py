@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import LinAlgError, inv
+from scipy.linalg import LinAlgError, LinAlgWarning, inv
 from scipy.spatial.distance import pdist, squareform
 
 __all__ = ["thin_plate_inverse", "thin_plate_left_out"]
@@ -57,6 +58,9 @@ def thin_plate_inverse(plane: Floats) -> Floats:
     system[:n, n:] = np.column_stack([np.ones(n), scaled])
     system[n:, :n] = system[:n, n:].T
     try:
-        return np.asarray(inv(system, check_finite=False)[:n, :n])
-    except LinAlgError:
+        with warnings.catch_warnings():
+            # An inverse without a correct digit is none: points in one line, or all but.
+            warnings.simplefilter("error", LinAlgWarning)
+            return np.asarray(inv(system, check_finite=False)[:n, :n])
+    except (LinAlgError, LinAlgWarning):
         return np.full((n, n), np.nan)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from geofit.data.site import Site
 from geofit.surfaces.protocol import Surface
 
-__all__ = ["describe_site", "describe_surfaces"]
+__all__ = ["describe_site", "describe_surfaces", "describe_tables"]
 
 Floats = NDArray[np.float64]
 
@@ -25,11 +25,36 @@ def describe_surfaces(file: Path) -> list[tuple[str, ...]]:
             poles = sum(patch.control.shape[0] * patch.control.shape[1] for patch in surface.patches)
             size = (str(len(surface.patches)), str(poles))
             xyz = np.concatenate([_corners(surface, i) for i in range(len(surface.patches))])
+            if surface.outline is not None or any(getattr(surface, "trim_loops", ())):
+                # Patches run on beyond the outline that trims them.
+                xyz = surface.triangulate().xyz
         else:
             mesh = surface.triangulate()
             size, xyz = (f"{len(mesh.triangles)} triangles", f"{len(mesh.points)}"), mesh.xyz
         rows.append((name, *size, *_ranges(xyz)))
     return rows
+
+
+def describe_tables(file: Path) -> list[tuple[str, ...]]:
+    """Return a row for each table of a file that is not one table of points alone: name, kind, confidence, rows, roles.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, empty or damaged.
+    """
+    from geofit.io.preview import preview_file
+
+    previews = preview_file(file)
+    if len(previews) == 1 and previews[0].kind in ("", "picks"):
+        return []
+    return [
+        (
+            one.table or one.file, one.kind or "not recognized", f"{one.confidence:.2f}", str(one.read or "–"),
+            ", ".join(f"{role.role} = {role.column}" for role in one.roles),
+        )
+        for one in previews
+    ]  # fmt: skip
 
 
 def _corners(surface: Surface, index: int) -> Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,13 +14,15 @@ from geofit.data.errors import InputError
 from geofit.data.files import folder_for, replacing
 from geofit.data.languages import EN, Language, translate
 from geofit.data.legible import legible
+from geofit.data.logs import IntervalLog
 from geofit.data.messages import Message, Untranslated, message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Ground, ImportIssue, Site, TableCount
 from geofit.io.added_tables import tables_text
 from geofit.io.boreholes import load_boreholes
 from geofit.io.columns import SCHEMAS
-from geofit.io.contacts import load_contacts
+from geofit.io.contact_rules import ContactRule
+from geofit.io.contacts import load_rule
 from geofit.io.grid import load_ground
 from geofit.io.guess import taken_as
 from geofit.io.import_plan import ImportPlan, TablePart, campaigns, complete, look_at
@@ -173,7 +176,7 @@ def _guesses(plan: ImportPlan) -> list[ImportIssue]:
             if guess.stated:
                 continue
             remedy = message("project.name-column-in-mapping", "Name another column in the mapping file.")
-            severity: Literal["note", "warning"] = "warning" if guess.basis == "values" else "note"
+            severity: Literal["note", "warning"] = "warning" if guess.doubtful else "note"
             notes.append(ImportIssue(name, 0, guess.column, "", severity, taken_as(guess), remedy))
     return notes
 
@@ -218,10 +221,9 @@ def _ground(plan: ImportPlan) -> Ground | None:
 def _limits(plan: ImportPlan, base: Sequence[str], top: Sequence[str]) -> list[dict[str, Any]]:
     """Return the limits that are asked for, or the base of each code with enough contacts, the highest first."""
     pairs = [*(("base", code) for code in base), *(("top", code) for code in top)]
-    asked = [{"name": _name(limit, code), limit: code} for limit, code in pairs]
-    if asked:
-        return asked
-    heights: dict[str, list[float]] = {}
+    if pairs:
+        return [{"name": _name(limit, code), limit: code} for limit, code in dict.fromkeys(pairs)]
+    heights: dict[tuple[str, ...], list[float]] = {}
     few: dict[str, int] = {}
     ground = _ground(plan)
     for collar, survey, logs in campaigns(plan):
@@ -236,11 +238,12 @@ def _limits(plan: ImportPlan, base: Sequence[str], top: Sequence[str]) -> list[d
             )
         except InputError:
             continue  # listed when the site is read
-        for code in dict.fromkeys(str(code) for log in found.logs for code in log.code):
-            heights.setdefault(code, []).extend(load_contacts(found, code, "base", Journal()).xyz[:, 2].tolist())
-    for code, z in list(heights.items()):
+        for codes in _spellings(found.logs, plan):
+            points = load_rule(found, ContactRule(codes), Journal())
+            heights.setdefault(codes, []).extend(points.xyz[:, 2].tolist())
+    for codes, z in list(heights.items()):
         if len(z) < FEWEST_CONTACTS:
-            few[code] = len(heights.pop(code))
+            few[codes[0]] = len(heights.pop(codes))
     if few:
         names = ", ".join(f"{code} ({count})" for code, count in sorted(few.items()))
         issue = ImportIssue(
@@ -263,8 +266,36 @@ def _limits(plan: ImportPlan, base: Sequence[str], top: Sequence[str]) -> list[d
         )
         if issue not in plan.issues:
             plan.issues.append(issue)
-    ordered = sorted(heights, key=lambda code: (-float(np.mean(heights[code])), code))
-    return [{"name": _name("base", code), "base": code} for code in ordered]
+    ordered = sorted(heights, key=lambda codes: (-float(np.mean(heights[codes])), codes))
+    return [
+        {"name": _name("base", codes[0]), "base": codes[0] if len(codes) == 1 else list(codes)} for codes in ordered
+    ]
+
+
+def _spellings(logs: Sequence[IntervalLog], plan: ImportPlan) -> list[tuple[str, ...]]:
+    """Return the codes of logs, those that differ in case only together, the commonest first; the plan lists these."""
+    counts = Counter(str(code) for log in logs for code in log.code)
+    alike: dict[str, list[str]] = {}
+    for code in counts:
+        alike.setdefault(code.casefold(), []).append(code)
+    groups = [tuple(sorted(codes, key=lambda code: (-counts[code], code))) for codes in alike.values()]
+    for codes in (codes for codes in groups if len(codes) > 1):
+        issue = ImportIssue(
+            logs[0].file,
+            0,
+            "",
+            ", ".join(codes),
+            "warning",
+            message(
+                "project.codes-differ-in-case",
+                "Codes that differ in case only count as one bed: {names}",
+                names=", ".join(f"{code} ({counts[code]})" for code in codes),
+            ),
+            message("project.split-codes-in-site-file", "Give each its own [[horizon]] where they are two."),
+        )
+        if issue not in plan.issues:
+            plan.issues.append(issue)
+    return groups
 
 
 def _name(limit: str, code: str) -> Message:

@@ -170,6 +170,21 @@ def run_horizons(
     return result
 
 
+def _without_dips(site: Site, fits: SiteFit) -> list[Message]:
+    """Return a warning for each horizon whose dips are to be fitted and of which none is measured."""
+    measured = set() if site.orientations is None else set(site.orientations.horizon.tolist())
+    return [
+        message(
+            "project.no-dips-to-fit",
+            "{name}: its dips are to be fitted, but none is measured on it: give them under [orientations], or with "
+            "--orientations",
+            name=name,
+        )
+        for name, surface in fits.surfaces.items()
+        if surface.settings.dips == "fit" and not {name, name.rsplit(" (", 1)[0]} & measured
+    ]
+
+
 def _corners(site: Site, fits: SiteFit) -> list[NDArray[np.float64]]:
     """Return the lowest coordinates of the surfaces, and of the holes in which bodies are logged."""
     places = [surface.bounds[0] for surface in fits.surfaces.values()]
@@ -186,7 +201,7 @@ def _write_results(
     from geofit.report.profile import report_sections
     from geofit.report.schema import horizon_document, write_json
 
-    failures, warnings = dict(fits.failures), list(fits.warnings)
+    failures, warnings = dict(fits.failures), [*fits.warnings, *_without_dips(site, fits)]
     sections = report_sections(site, [surface.points for surface in fits.surfaces.values()]) if fits.surfaces else ()
     made, whole = _examined(site, fits, out, hands, progress, language, bands, sections, failures, where, signed)
     results = [one.result for one in made]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from geofit.data.rounding import rounded_metres
+
 __all__ = [
     "area",
     "count",
@@ -23,8 +25,6 @@ __all__ = [
 NOTHING = "–"
 #: Below this a distance is the rounding of the computer, not a property of a surface; metres or degrees.
 NOISE = 1e-9
-#: Below this, powers of ten are shorter than zeros.
-SMALL = 1e-4
 #: Keeps the groups of thousands on one line.
 _GAP = "\N{NO-BREAK SPACE}"
 _UNITS = {"m": "m", "deg": "°", "degrees": "°", "m2": "m²", "m3": "m³", "1": "", "": ""}
@@ -48,10 +48,7 @@ def metres(value: float | None) -> str:
     size = abs(value)
     if size < NOISE:
         return f"<{_GAP}1e-9"
-    if size < SMALL:
-        mantissa, exponent = f"{size:.2e}".split("e")
-        return f"{sign}{mantissa}e{int(exponent)}"
-    return sign + _grouped(f"{size:.{max(3, 2 - math.floor(math.log10(size)))}f}")
+    return sign + (rounded_metres(size) if size < 1 else _grouped(rounded_metres(size)))
 
 
 def length(value: float | None) -> str:

@@ -27,6 +27,8 @@ MOST, THICKNESS = 4, 0.02
 HALF = 1.6448536269514722
 #: Largest distance of the triangles that are cut, metres; vertices of the lines are exact.
 COARSE = 0.5
+#: Points in one line have no section across it: below this share of the site's extent.
+NARROWEST = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,10 +122,11 @@ def _crosswise(site: Site, points: Sequence[PointSet]) -> tuple[Section, ...]:
     middle = (ends.min(axis=0) + ends.max(axis=0)) / 2
     _, _, axes = np.linalg.svd(xy - xy.mean(axis=0), full_matrices=False)
     sections = []
+    extent = float(np.hypot(*np.ptp(ends, axis=0)))
     for name, way in zip("AB", axes, strict=True):
         way = way if way[0] > 0 or (way[0] == 0 and way[1] > 0) else -way
         reach = (ends - middle) @ way
-        if reach.max() - reach.min() > 0:
+        if np.ptp(reach) > NARROWEST * extent:
             sections.append(Section(name, middle + np.outer([reach.min(), reach.max()], way)))
     return tuple(sections)
 

@@ -10,7 +10,7 @@ from geofit.sample.site import write_site
 def main() -> None:
     """Write the sample site and print how many points each horizon has."""
     parser = argparse.ArgumentParser("python -m geofit.sample", description="Write the sample site.")
-    parser.add_argument("out", metavar="OUT", help="folder to write into; made if it is missing")
+    parser.add_argument("out", metavar="OUT", help="folder to write into; created if missing")
     for horizon, n in write_site(parser.parse_args().out).items():
         print(f"{horizon:<6} {n:>4} points")
 

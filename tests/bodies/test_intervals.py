@@ -52,6 +52,14 @@ def test_unknown_code() -> None:
         from_intervals(holes(("A", 0, 10, "X")), "ORE")
 
 
+def test_codes_in_another_case_are_outside_and_listed() -> None:
+    source = holes(("A", 0, 10, "X"), ("A", 10, 20, "ORE"), ("B", 0, 10, "X"), ("B", 10, 20, "Ore"))
+    data = from_intervals(source, "ORE", step=1)
+    assert [issue.text.code for issue in data.issues] == ["bodies.code-differs-in-case"]
+    assert "Ore (1)" in str(data.issues[0].text)
+    assert not from_intervals(source, ["ORE", "Ore"], step=1).issues
+
+
 def test_coincident_contacts_with_opposite_normals_are_listed() -> None:
     data = BodyData(
         contacts=[[0, 0, 0], [0, 0, 1e-9], [5, 0, 0], [0, 5, 0], [0, 0, 5]],

@@ -159,6 +159,22 @@ def test_seams_of_turned_and_mirrored_neighbours():
     assert max(s.angle for s in found) < 1e-6
 
 
+def test_seams_along_parts_of_edges():
+    """Faces of a file end where they are trimmed: a short edge runs along a part of a long one."""
+    whole = height_field(25, 19)
+    left, right = split(whole, [400.0], [])
+    low, high = split(right, [], [300.0])
+    parts = replace(left, name="left"), replace(low, name="low"), replace(high, name="high")
+    found = {(s.first, s.second): s for s in seams(parts)}
+    assert set(found) == {("left", "low"), ("left", "high"), ("low", "high")}
+    assert max(s.gap for s in found.values()) < 1e-9
+    assert max(s.angle for s in found.values()) < 1e-4
+    found = {(s.first, s.second): s.gap for s in seams(moved(parts, "high", [0, 0, 0.05]))}
+    assert found["left", "high"] == pytest.approx(0.05, rel=0.2)
+    assert found["low", "high"] == pytest.approx(0.05, rel=0.2)
+    assert found["left", "low"] < 1e-9
+
+
 def test_one_surface_is_the_whole_with_c1_seams():
     whole, parts = nine()
     rng = np.random.default_rng(0)

@@ -142,6 +142,14 @@ def rock(tmp_path) -> Path:
     return tmp_path / "rock_9x9x20.raw"
 
 
+def test_body_without_a_code_names_the_option_and_the_codes(drilled, monkeypatch, capsys):
+    tables = (drilled / "collar.csv", "--intervals", drilled / "lithology.csv")
+    code, _, told = run(monkeypatch, capsys, "body", *tables, "--out", drilled / "none")
+    assert code == 2
+    assert "--code" in told
+    assert "ORE (" in told
+
+
 def test_pores_counts_two_chambers_and_their_throat(rock, tmp_path, monkeypatch, capsys):
     options = ("--pore", "0", "--voxel", "1e-6", "--out", tmp_path / "o", "--json")
     code, out, err = run(monkeypatch, capsys, "pores", rock, *options)

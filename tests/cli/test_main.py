@@ -345,6 +345,70 @@ def test_only_the_first_findings_are_told(capsys):
     assert "and 4 more" in told
 
 
+def test_many_errors_do_not_hide_the_warnings(capsys):
+    issues = [
+        ImportIssue("a.csv", i, "z", "?", "error", message(f"test.kind-{i}", "not a number"), message("test.text", "x"))
+        for i in range(7)
+    ]
+    far = message("test.far", "far off")
+    console.print_issues([*issues, ImportIssue("a.csv", 9, "x", "0", "warning", far, message("test.text", "x"))])
+    told = capsys.readouterr().err
+    assert "... and 2 more errors." in told
+    assert "warning: a.csv, row 9, column 'x', value '0': far off" in told
+
+
+def test_info_says_what_tables_other_than_points_hold(tmp_path, monkeypatch, capsys):
+    (tmp_path / "c.csv").write_text("hole,x,y,z,depth\nB1,500000,3100000,90,10\nB2,500100,3100000,91,12\n")
+    (tmp_path / "s.csv").write_text("hole,depth,azimuth,dip\nB1,0,90,60\n")
+    code, out, _ = run(monkeypatch, capsys, "info", tmp_path / "s.csv", "--json")
+    assert (code, json.loads(out)[0]["kind"]) == (0, "survey")
+    code, out, _ = run(monkeypatch, capsys, "info", tmp_path / "c.csv")
+    assert code == 0
+    assert "collar" in out
+    assert "z = z" in out
+    np.savez(tmp_path / "v.npz", volume=np.zeros((3, 3, 3)))
+    code, _, told = run(monkeypatch, capsys, "info", tmp_path / "v.npz")
+    assert code == 2
+    assert "ZIP archive or an array of NumPy" in told
+    code, _, told = run(monkeypatch, capsys, "info", tmp_path.parent / "." / tmp_path.name)
+    assert code == 2
+    assert tmp_path.name in told
+
+
+def test_a_surface_through_collars_is_warned_of(tmp_path, monkeypatch, capsys):
+    rows = "".join(f"B{i},{500000 + 40 * i},{3100000 + 37 * (i % 3)},{90 + i},10\n" for i in range(6))
+    (tmp_path / "c.csv").write_text("hole,x,y,z,depth\n" + rows)
+    _, _, told = run(monkeypatch, capsys, "fit", tmp_path / "c.csv", "--out", tmp_path / "out")
+    assert "looks like collars" in told
+    _, _, told = run(monkeypatch, capsys, "fit", tmp_path / "c.csv", "--z", "z", "--out", tmp_path / "out")
+    assert "looks like collars" not in told
+
+
+def test_points_in_one_line_leave_no_warning_of_a_library(tmp_path):
+    rows = "".join(f"{10 * i},{20 * i},{5 + 3 * np.sin(i / 5):.3f}\n" for i in range(30))
+    (tmp_path / "line.csv").write_text("x,y,z\n" + rows)
+    done = subprocess.run(
+        [sys.executable, "-m", "geofit", "fit", tmp_path / "line.csv", "--out", tmp_path / "out"],
+        capture_output=True, text=True, check=False, encoding="utf-8",
+    )  # fmt: skip
+    assert done.returncode in (0, 1), done.stderr
+    assert "Warning:" not in done.stderr
+    assert "missing from the geological sections" not in done.stderr
+
+
+def test_the_grid_of_a_table_is_in_the_results_and_must_count_in_metres(picks, tmp_path, monkeypatch, capsys):
+    pytest.importorskip("pyproj")
+    for wrong, word in (("EPSG:4326", "not a projected system"), ("EPSG:999999", "unknown")):
+        code, _, told = run(monkeypatch, capsys, "fit", picks, "--crs", wrong, "--out", tmp_path / "out")
+        assert (code, word in told) == (2, True), told
+    code, out, told = run(
+        monkeypatch, capsys, "fit", picks, "--crs", "EPSG:32650", "--dips", "fit", "--out", tmp_path / "out", "--json"
+    )
+    assert code == 0, told
+    assert json.loads(out)["crs"] == "EPSG:32650"
+    assert "dips are to be fitted, but none is measured" in told
+
+
 def test_version_and_help(monkeypatch, capsys):
     import geofit
 

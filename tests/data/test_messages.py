@@ -8,6 +8,11 @@ def of(severity, name):
     return message("test.text", "{name}", name=name).with_severity(severity)
 
 
+def test_a_length_in_a_sentence_has_the_digits_of_the_tables():
+    texts = [str(message("test.length", "{d:length} m of {n}", d=d, n=3)) for d in (132.97341, 0.0301, 3.21e-5, 5970.1)]
+    assert texts == ["132.973 m of 3", "0.0301 m of 3", "3.21e-5 m of 3", "5970.100 m of 3"]
+
+
 def test_the_gravest_come_first_and_equals_keep_their_order():
     given = [of("info", "a"), of("warning", "b"), of("error", "c"), of("warning", "d"), of("info", "e")]
     assert [one.params["name"] for one in gravest_first(given)] == ["c", "b", "d", "a", "e"]

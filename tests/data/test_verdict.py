@@ -66,6 +66,14 @@ def test_a_left_out_error_of_ten_epsilons_is_red_and_said():
     assert "10.0 ε" in str(found.text)
 
 
+def test_rounding_is_no_figure_whatever_else_is_wrong():
+    passed = verdict_of(accuracy(2e-14)).lamps[0].text
+    failed = verdict_of(replace(accuracy(2e-14), passed=False)).lamps[0].text
+    assert "σ < 1e-9 m" in str(passed)
+    assert "σ < 1e-9 m" in str(failed)
+    assert failed.code == "data.verdict-exact-and-runs-away"
+
+
 def test_the_file_and_the_order_count_among_the_checks():
     assert verdict_of(accuracy(), orders=[replace(BAD, name="order")]).checks.text.params["names"] == ("order",)
 

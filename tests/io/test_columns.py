@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from geofit.data.errors import InputError
-from geofit.io import columns
+from geofit.io import columns, read_points
 from geofit.io.guess import find_columns
 from geofit.io.journal import Journal
 from geofit.io.rows import read_rows
@@ -90,3 +90,30 @@ def test_feet_are_converted_and_warned_of(write):
     assert rows.numbers("z").tolist() == [3 * 0.3048]
     assert rows.numbers("x").tolist() == [1.0]
     assert any("feet" in str(issue.reason) for issue in journal.issues if issue.severity == "warning")
+
+
+def test_of_two_columns_of_one_name_the_first_counts_and_a_warning_names_both(write):
+    found = read_points(write("x,y,z,z\n0,0,1,7\n5,0,2,8\n0,5,3,9\n"))
+    assert next(iter(found.horizons.values())).xyz[:, 2].tolist() == [1, 2, 3]
+    (doubt,) = [issue for issue in found.issues if issue.severity == "warning"]
+    assert doubt.reason.code == "io.column-alternatives"
+    assert "'z (2)'" in str(doubt.reason)
+
+
+def test_depths_next_to_the_elevation_of_collars_are_warned_of(write):
+    text = "hole,x,y,z,depth_to_top,horizon\nB1,0,0,200,12,T2\nB2,50,0,201,15,T2\nB3,0,50,202,17,T2\n"
+    (doubt,) = [issue for issue in read_points(write(text)).issues if issue.severity == "warning"]
+    assert doubt.reason.code == "io.depths-not-read"
+    assert doubt.column == "depth_to_top"
+    assert not [issue for issue in read_points(write(text), z="z").issues if issue.severity == "warning"]
+
+
+def test_a_depth_that_is_named_as_elevation_is_warned_of(write, tmp_path):
+    text = "x,y,depth (m)\n0,0,12\n50,0,15\n0,50,17\n"
+    (doubt,) = [issue for issue in read_points(write(text), z="depth (m)").issues if issue.severity == "warning"]
+    assert doubt.reason.code == "io.depth-taken-as-elevation"
+
+
+def test_two_equal_columns_of_one_name_are_no_warning(write):
+    found = read_points(write("x,y,z,z\n0,0,1,1\n5,0,2,2\n0,5,3,3\n"))
+    assert {issue.severity for issue in found.issues} == {"note"}

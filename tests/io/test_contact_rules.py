@@ -120,3 +120,15 @@ def test_a_code_that_no_interval_has_is_named_though_others_are_found():
     (issue,) = (one for one in journal.issues if one.reason.code == "io.rule-code-not-logged")
     assert (issue.severity, issue.value) == ("warning", "snad")
     assert "Did you mean 'sand'?" in str(issue.remedy)
+
+
+def test_codes_in_another_case_are_warned_of():
+    journal = Journal()
+    holes = logged([("soil", 4), ("T2", 2), ("rock", 9)], [("soil", 4), ("t2", 3), ("rock", 9)])
+    assert load_rule(holes, ContactRule(("T2",)), journal).hole.tolist() == ["B0"]
+    (found,) = [issue for issue in journal.issues if issue.reason.code == "io.code-differs-in-case"]
+    assert found.severity == "warning"
+    assert 'base = ["T2", "t2"]' in str(found.remedy)
+    journal = Journal()
+    assert load_rule(holes, ContactRule(("T2", "t2")), journal).hole.tolist() == ["B0", "B1"]
+    assert not journal.issues

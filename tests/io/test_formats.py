@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import struct
 
 import numpy as np
@@ -56,6 +57,21 @@ AGS3 = """"**PROJ"
 "<CONT>","","","rm CLAY","Q"
 "B1","12","50","GRANITE","G"
 """
+
+
+def test_days_of_a_sheet_are_days_without_an_hour(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    for row in (
+        ["hole", "x", "y", "z"],
+        [datetime.datetime(2024, 3, 5), 0, 0, 1],
+        [datetime.date(2024, 3, 6), 5, 0, 2],
+        [datetime.datetime(2024, 3, 7, 8, 30), 0, 5, 3],
+    ):
+        book.active.append(row)
+    book.save(tmp_path / "days.xlsx")
+    holes = next(iter(read_points(tmp_path / "days.xlsx").horizons.values())).hole.tolist()
+    assert holes == ["2024-03-05", "2024-03-06", "2024-03-07T08:30:00"]
 
 
 def test_ags4_against_the_ags_package(write):

@@ -135,3 +135,32 @@ def test_places_spread_out_have_none_far_from_their_middle(seed):
     crowded = np.where(np.arange(400) < 300, x / np.abs(x).max(), 1e6 * x)
     assert axes.spread_out(rng.uniform(0, 1, 400), y)
     assert not axes.spread_out(crowded, np.zeros(400))
+
+
+def test_names_that_differ_in_case_only_are_one_horizon(write):
+    found = read_points(write("horizon,x,y,z\nT2,0,0,1\nt2 ,5,0,2\nT1,0,5,3\n T2,9,9,4\n"))
+    assert {name: len(points) for name, points in found.horizons.items()} == {"T2": 3, "T1": 1}
+    assert [
+        issue.reason.params["names"] for issue in found.issues if issue.reason.code == "io.horizon-names-merged"
+    ] == ["t2 = T2"]
+
+
+@pytest.mark.parametrize(("x", "y"), [(900000, 3100500), (0, 0), (500050, 3900000)])
+def test_a_place_far_from_all_others_is_warned_of(write, x, y):
+    rng = np.random.default_rng(1)
+    rows = [f"{500000 + a:.1f},{3100000 + b:.1f},10" for a, b in rng.uniform(0, 900, (30, 2))]
+    found = read_points(write("\n".join(["x,y,z", *rows, f"{x},{y},10"]) + "\n"))
+    (far,) = [issue for issue in found.issues if issue.reason.code == "io.row-far-from-others"]
+    assert (far.row, far.severity) == (32, "warning")
+    assert far.reason.params["distance"] == pytest.approx(
+        np.hypot(max(500000 - x, x - 500900, 0), max(3100000 - y, y - 3100900, 0)), abs=100
+    )
+    assert len(next(iter(found.horizons.values()))) == 31
+
+
+def test_a_thin_rim_around_a_dense_core_is_not_far(write):
+    rng = np.random.default_rng(2)
+    core, rim = rng.uniform(-40, 40, (80, 2)), rng.uniform(-2500, 2500, (25, 2))
+    rows = [f"{500000 + a:.1f},{3100000 + b:.1f},10" for a, b in np.concatenate([core, rim])]
+    found = read_points(write("\n".join(["x,y,z", *rows]) + "\n"))
+    assert "io.row-far-from-others" not in [issue.reason.code for issue in found.issues]

@@ -236,3 +236,20 @@ def test_warnings_are_shown_by_kind(capsys):
     )
     lines = capsys.readouterr().err.splitlines()
     assert [line.split(":")[-1].strip() for line in lines[1:]] == ["bad.", "grave.", "dull 0. (279 more like it)"]
+
+
+def test_codes_that_differ_in_case_make_one_horizon(folder):
+    log = "hole,from,to,rock\n" + "".join(
+        f"B{i},0,{10 + i},{'Clay' if i % 2 else 'clay'}\nB{i},{10 + i},50,granite\n" for i in range(5)
+    )
+    (folder / "log.csv").write_text(log, encoding="utf-8")
+    found = import_files([folder / name for name in ("collar.csv", "log.csv")], folder / "site.toml")
+    assert {name: len(points) for name, points in found.site.horizons.items()} == {"base of clay": 5}
+    (issue,) = [issue for issue in found.issues if issue.reason.code == "project.codes-differ-in-case"]
+    assert issue.severity == "warning"
+    assert 'base = ["clay", "Clay"]' in (folder / "site.toml").read_text(encoding="utf-8")
+
+
+def test_a_code_that_is_asked_for_twice_is_one_horizon(folder):
+    files = [folder / name for name in ("collar.csv", "log.csv")]
+    assert list(import_files(files, folder / "site.toml", base=("clay", "clay")).site.horizons) == ["base of clay"]
