@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from string import ascii_uppercase
 from typing import Literal
@@ -18,7 +18,7 @@ from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table, first_names, parse_numbers
 
-__all__ = ["RoleGuess", "find_columns", "guess_roles", "locate", "sample_of", "taken_as"]
+__all__ = ["RoleGuess", "find_columns", "guess_roles", "locate", "sample_of", "taken_as", "warn_of_depths"]
 
 #: Roles whose cells are words; all others hold numbers.
 WORDS = frozenset({"hole", "code", "horizon", "section", "adit", "kind", "side"})
@@ -218,7 +218,7 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
     if schema.name == "picks":
         _warn_of_constant(table, columns, journal)
         if "z" in columns and source.measure is None:
-            _warn_of_depths(table, columns, guesses["z"], journal)
+            warn_of_depths(table.name, table.header, guesses, journal)
     if source.target and (table.named or source.columns):
         columns |= _geographic(table, columns, journal)
     missing = [role for role in schema.needed if role not in columns]
@@ -299,13 +299,14 @@ def _warn_of_constant(table: Table, columns: Mapping[str, int], journal: Journal
         )
 
 
-def _warn_of_depths(table: Table, columns: Mapping[str, int], z: RoleGuess, journal: Journal) -> None:
+def warn_of_depths(file: str, header: Sequence[str], guesses: Mapping[str, RoleGuess], journal: Journal) -> None:
     """Warn of an elevation that is called a depth, and of depths that nobody reads next to a guessed elevation."""
-    depths = [j for j, name in enumerate(table.header) if any(word in name.casefold() for word in DEPTHS)]
+    z, read = guesses["z"], {guess.index for guess in guesses.values()}
+    depths = [j for j, name in enumerate(header) if any(word in name.casefold() for word in DEPTHS)]
     if z.index in depths:
         journal.add(
             "warning",
-            table.name,
+            file,
             message(
                 "io.depth-taken-as-elevation",
                 "Column '{column}' is called a depth and is taken as an elevation, upwards",
@@ -318,19 +319,18 @@ def _warn_of_depths(table: Table, columns: Mapping[str, int], z: RoleGuess, jour
         )
     elif z.stated:
         return
-    for j in (j for j in depths if j not in columns.values()):
-        header = table.header[j]
+    for j in (j for j in depths if j not in read):
         journal.add(
             "warning",
-            table.name,
+            file,
             message(
                 "io.depths-not-read",
                 "Column '{depth}' is not used: '{column}' is taken as the elevation of the points, not of the collars",
-                depth=Untranslated(header),
-                column=Untranslated(table.header[columns["z"]]),
+                depth=Untranslated(header[j]),
+                column=Untranslated(z.column),
             ),
             message("io.subtract-depths", "Where it is that of the collars, give it less the depth."),
-            column=header,
+            column=header[j],
         )
 
 

@@ -24,7 +24,7 @@ from geofit.io.columns import SCHEMAS
 from geofit.io.contact_rules import ContactRule
 from geofit.io.contacts import load_rule
 from geofit.io.grid import load_ground
-from geofit.io.guess import taken_as
+from geofit.io.guess import taken_as, warn_of_depths
 from geofit.io.import_plan import ImportPlan, TablePart, campaigns, complete, look_at
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping, save_mappings
@@ -178,6 +178,12 @@ def _guesses(plan: ImportPlan) -> list[ImportIssue]:
             remedy = message("project.name-column-in-mapping", "Name another column in the mapping file.")
             severity: Literal["note", "warning"] = "warning" if guess.doubtful else "note"
             notes.append(ImportIssue(name, 0, guess.column, "", severity, taken_as(guess), remedy))
+        guesses = {guess.role: guess for guess in preview.roles}
+        if preview.kind == "picks" and "z" in guesses and not guesses["z"].stated:
+            # The mapping states the columns from here on, so the reader itself no longer asks.
+            depths = Journal()
+            warn_of_depths(name, preview.header, guesses, depths)
+            notes += depths.issues
     return notes
 
 

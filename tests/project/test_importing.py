@@ -250,6 +250,13 @@ def test_codes_that_differ_in_case_make_one_horizon(folder):
     assert 'base = ["clay", "Clay"]' in (folder / "site.toml").read_text(encoding="utf-8")
 
 
+def test_depths_next_to_elevations_are_warned_of(folder):
+    rows = "".join(f"B{i},{500000 + 40 * i},{3100000 + 30 * (i % 2)},200,{10 + i},T2\n" for i in range(5))
+    (folder / "tops.csv").write_text("hole,x,y,z,depth_to_top,horizon\n" + rows, encoding="utf-8")
+    found = import_files([folder / "tops.csv"], folder / "site.toml")
+    assert [one.column for one in found.issues if one.reason.code == "io.depths-not-read"] == ["depth_to_top"]
+
+
 def test_a_code_that_is_asked_for_twice_is_one_horizon(folder):
     files = [folder / name for name in ("collar.csv", "log.csv")]
     assert list(import_files(files, folder / "site.toml", base=("clay", "clay")).site.horizons) == ["base of clay"]
