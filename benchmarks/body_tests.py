@@ -2,14 +2,8 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
-from xml.etree import ElementTree
+from acceptance_page import ROOT, write_page
 
-ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs" / "body_tests.md"
 #: What is asked, and below it the tests of it.
 ASKED = """
 T1 volume and area of quadrics
@@ -135,46 +129,13 @@ SHORT = {
 
 def main() -> int:
     """Run every test once and write the page."""
-    rows: list[tuple[str, str, str]] = []
-    key, what = "", ""
-    for line in ASKED.strip().splitlines():
-        if line.startswith(" "):
-            rows.append((key, what, line.strip()))
-        else:
-            key, _, what = line.partition(" ")
-    nodes = sorted({f"tests/{test}" for _, _, test in rows})
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "tests.xml"
-        command = [sys.executable, "-m", "pytest", "-q", f"--junitxml={path}", *nodes]
-        subprocess.run(command, cwd=ROOT, check=False)
-        found = _outcomes(path)
-    lines = [
+    head = [
         "# Tests of bodies and metamorphosis",
         "",
         "Made by `python benchmarks/body_tests.py`: the tests T1 to T37 of the method, each as a test of the suite. "
         "Cases that passed of those that ran, and their time on one shared machine.",
-        "",
-        "| | what | test | passed | s | short of the method |",
-        "|---|---|---|---:|---:|---|",
     ]
-    for key, what, test in rows:
-        file, _, name = test.partition("::")
-        passed, count, seconds = found.get((Path(file).stem, name), (0, 0, 0.0))
-        cells = [key, what, test, f"{passed} of {count}", f"{seconds:.1f}", SHORT.get(key, "")]
-        lines.append("| " + " | ".join(cells) + " |")
-    PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    return 0
-
-
-def _outcomes(path: Path) -> dict[tuple[str, str], tuple[int, int, float]]:
-    """Return how many cases of each test passed, of how many, and their seconds."""
-    found: dict[tuple[str, str], tuple[int, int, float]] = {}
-    for case in ElementTree.parse(path).getroot().iter("testcase"):
-        key = case.get("classname", "").rpartition(".")[2], case.get("name", "").partition("[")[0]
-        passed, count, seconds = found.get(key, (0, 0, 0.0))
-        failed = any(case.find(word) is not None for word in ("failure", "error", "skipped"))
-        found[key] = passed + (not failed), count + 1, seconds + float(case.get("time", 0))
-    return found
+    return int(write_page(ROOT / "docs" / "body_tests.md", head, ASKED, SHORT) > 0)
 
 
 if __name__ == "__main__":

@@ -59,7 +59,7 @@ def measure(name: str) -> dict[str, Any]:
         "pores": len(pores),
         "throats": len(throats),
         "coordination": float(network.coordination.mean()),
-        "radius_um": [float(table.inscribed.mean() * network.unit * 1e6) for table in (pores, throats)],
+        "radius_um": [float(table.radius.mean() * network.unit * 1e6) for table in (pores, throats)],
         "porosity_gap": network.porosity / connectivity(volume).connected - 1,
         "laplace": laplace_permeability(volume).millidarcy if volume.pore.size <= LAPLACE else None,
         "permeability": network_permeability(network).millidarcy,

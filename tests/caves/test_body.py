@@ -189,6 +189,26 @@ def test_a_junction_swells_by_no_more_than_the_blend_allows():
     assert len(np.unique(sharp.sweeps.branch)) == 3
 
 
+def test_a_y_of_tunnels_has_its_volume():
+    """PORES.md, test 34: three round tunnels in a plane; their union by counting."""
+    ends = np.array([[20.0, 0, 0], [-10, 10 * np.sqrt(3), 0], [-10, -10 * np.sqrt(3), 0]])
+    shots = ShotList(across=True)
+    for row, end in enumerate(ends):
+        shots.add_walls(f"{row}", shots.add("j", f"{row}", end, row), [2.0] * 4)
+    shots.add_walls("j", 0, [2.0] * 4)
+    body = centreline_body(shots.survey("Y"), blend=0.0)
+    # A capsule a way, counted on a lattice four times as fine as the body's.
+    step = 0.05
+    z = np.arange(step / 2, 2.2, step)
+    x, y = np.meshgrid(np.arange(-12.5, 22.5, step), np.arange(0.0, 20.0, step) + step / 2, indexing="ij")
+    nearest = np.full(x.shape, np.inf)
+    for end in ends / 20:
+        t = np.clip(x * end[0] + y * end[1], 0, 20)
+        nearest = np.minimum(nearest, np.hypot(x - t * end[0], y - t * end[1]))
+    truth = 4 * step**3 * sum(np.count_nonzero(nearest**2 + height**2 < 4) for height in z)
+    assert body.volume(0.2) == pytest.approx(truth, rel=0.01)
+
+
 def test_thin_passages_are_named():
     body = centreline_body(chain([[0, 0, 0], [9, 0, 0], [18, 0, 0], [27, 0, 0]], [2.0, 2.0, 0.2, 2.0]))
     assert body.thinner_than(0.5) == (("1", "2"), ("2", "3"))

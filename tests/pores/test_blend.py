@@ -90,7 +90,7 @@ def test_two_balls_stay_between_their_union_and_its_bound(gap, small, kappa):
 @pytest.mark.parametrize("joint", [1.0, 1.5])
 @pytest.mark.parametrize("kernel", [kernel for kernel in KERNELS if kernel != "blinn"])
 def test_normals_turn_by_a_milliradian_in_a_hundredth_of_a_voxel(kernel, joint):
-    """Across the visible and the effective radius of one ball, in the field of both, near the surface; Blinn's has no joint."""
+    """Across visible and effective radius of one ball, in the field of both, near the surface; Blinn's has no joint."""
     centres, radii = np.array([[0.0, 0, 0], [34.0, 5, 3]]), np.array([24.0, 20.0])
     body = balls_of(kernel, centres, radii)
     for centre, radius in zip(centres, radii, strict=True):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from shapes import capsules, pack
 
-from geofit.pores import RockVolume, euler_number, pore_network, pore_surface
+from geofit.pores import RockVolume, euler_number, maximal_balls, pore_network, pore_surface
 
 
 def network_of(pore):
@@ -106,16 +106,51 @@ def test_a_ring_has_one_tunnel_and_its_network_closes():
     assert np.sort(network.throats.pores, axis=1).tolist() == [[0, 1], [0, 1]]
 
 
-def test_a_helix_is_one_pore_and_has_pappus_volume():
+@pytest.mark.parametrize("radius", [6.0, 8.0])
+def test_a_helix_is_one_pore_and_has_pappus_volume(radius):
     angle = np.linspace(0, 4 * np.pi, 120)
-    line = np.column_stack([32 + 18 * np.cos(angle), 32 + 18 * np.sin(angle), 14 + 36 * angle / (4 * np.pi)])
-    pore = capsules((64, 64, 64), [(a, b, 6.0) for a, b in pairwise(line)])
+    line = np.column_stack([36 + 22 * np.cos(angle), 36 + 22 * np.sin(angle), 12 + 50 * angle / (4 * np.pi)])
+    pore = capsules((72, 72, 74), [(a, b, radius) for a, b in pairwise(line)])
     length = np.linalg.norm(np.diff(line, axis=0), axis=1).sum()
-    truth = np.pi * 36 * length + 4 / 3 * np.pi * 216
+    truth = np.pi * radius**2 * length + 4 / 3 * np.pi * radius**3
     assert pore.sum() == pytest.approx(truth, rel=0.01)
     network = network_of(pore)
     assert network.pores.volume.sum() == pore.sum()
     assert len(network.pores) == 1
+
+
+@pytest.mark.parametrize("direction", [(1, 0, 0), (1, 1, 0), (3, 2, 1)])
+def test_balls_of_a_body_of_revolution_have_its_axis_and_radius(direction):
+    """PORES.md, test 20: the largest ball of each piece lies on the axis and has the radius there."""
+    d = np.array(direction) / np.linalg.norm(direction)
+    grid = np.argwhere(np.ones((56, 56, 56), bool)) + 0.5 - 28
+    along = grid @ d
+    off = np.linalg.norm(grid - along[:, None] * d, axis=1)
+    body = ((off < 9 + 2 * np.sin(along / 9)) & (np.abs(along) < 22)).reshape(56, 56, 56)
+    balls = maximal_balls(RockVolume(body, pore=True, voxel=1.0))
+    where = balls.centre + 0.5 - 28
+    position = where @ d
+    away = np.linalg.norm(where - position[:, None] * d, axis=1)
+    for low in range(-9, 9, 3):
+        here = np.flatnonzero((position >= low) & (position < low + 3))
+        best = here[np.lexsort((away[here], -balls.radius[here]))[0]]
+        assert away[best] <= np.sqrt(3) / 2
+        # A narrower place of the body may lie within the ball's own length: the wall is not parallel to the axis.
+        wall = 9 + 2 * np.sin((position[best] + np.linspace(-9, 9, 181)) / 9)
+        nearest = np.hypot(wall - away[best], np.linspace(-9, 9, 181)).min()
+        assert balls.radius[best] == pytest.approx(nearest, abs=0.5)
+
+
+def test_a_sphere_in_long_voxels_keeps_its_porosity():
+    """PORES.md, test 31; off the grid, where the count of its voxels is its volume."""
+    radius = 20.0
+    i, j, k = (one + 0.3 for one in np.ogrid[-22:23, -22:23, -12:13])
+    volume = RockVolume(i**2 + j**2 + (2 * k) ** 2 <= radius**2, pore=True, voxel=(1.0, 1.0, 2.0))
+    truth = 4 / 3 * np.pi * radius**3 / (45 * 45 * 50)
+    assert volume.porosity == pytest.approx(truth, rel=0.005)
+    network = pore_network(volume)
+    assert network.porosity == pytest.approx(truth, rel=0.005)
+    assert pore_surface(volume, network).porosity == pytest.approx(truth, rel=0.005)
 
 
 @pytest.mark.parametrize(("lattice", "phi", "cell"), [("sc", 0.4764, 40), ("bcc", 0.3198, 46), ("fcc", 0.2595, 57)])

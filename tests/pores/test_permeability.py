@@ -258,6 +258,7 @@ def test_kozeny_is_an_upper_bound_on_rock(rock):
     table = before_after(volume, network, pore_surface(volume, network))
     assert max(table.before.network.square_metres) < table.before.kozeny
     assert -0.05 < table.after.connectivity.connected / table.before.connectivity.porosity - 1 < 0
+    assert table.after.connectivity.porosity == pytest.approx(table.before.connectivity.connected, rel=0.01)
     assert table.dropped == pytest.approx(volume.porosity - network.porosity)
     assert table.kozeny_ratio == pytest.approx(
         kozeny_ratio(table.before.connectivity.connected, table.after.connectivity.connected)

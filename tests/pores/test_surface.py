@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from brute import blobs
+from shapes import pack
 
 from geofit.implicit.field import Field
 from geofit.pores import RockVolume, VolumeError, pore_network, pore_surface
@@ -49,6 +51,21 @@ def test_boxes_bound_their_values(berea):
     inside = body.value((lower + rng.random((300, 3)) * (upper - lower)) * berea[0].unit)
     assert (inside >= low - 1e-12).all()
     assert (inside <= high + 1e-12).all()
+
+
+@pytest.mark.parametrize("construction", ["contact", "blend"])
+@pytest.mark.parametrize("source", ["sc", "bcc", "fcc", 2, 4, 5])
+def test_surfaces_of_packs_and_noise_are_closed(source, construction):
+    """PORES.md, test 33."""
+    pore = pack(source, 24, 1) if isinstance(source, str) else blobs(source, (26, 24, 22))
+    volume = RockVolume(pore, pore=True, voxel=1e-6)
+    network = pore_network(volume)
+    body = pore_surface(volume, network, construction=construction)
+    mesh = body.triangulate()
+    assert mesh.is_closed
+    assert mesh.is_manifold
+    if construction == "contact":
+        assert body.porosity == pytest.approx(network.porosity, rel=0.01)
 
 
 def test_wrong_parameters_are_errors(berea):
