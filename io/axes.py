@@ -45,8 +45,8 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
     """Reject rows whose x and y look exchanged, and warn of rows far off.
 
     A row looks exchanged when it lies outside ``region`` and would lie inside with x and y swapped. Without a
-    region the rows themselves make one: 20 median distances around their median; of the rows outside it, those
-    the few that lie more than three extents of the others away from them are warned of.
+    region the rows themselves make one: 20 median distances around their median; of the rows outside it, the
+    few that lie more than three extents of the others away from them are warned of.
 
     Raises
     ------

@@ -329,7 +329,7 @@ def warn_of_depths(file: str, header: Sequence[str], guesses: Mapping[str, RoleG
                 depth=Untranslated(header[j]),
                 column=Untranslated(z.column),
             ),
-            message("io.subtract-depths", "Where it is that of the collars, give it less the depth."),
+            message("io.subtract-depths", "If it is that of the collars, subtract the depth first."),
             column=header[j],
         )
 

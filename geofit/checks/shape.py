@@ -23,6 +23,8 @@ Floats = NDArray[np.float64]
 
 #: How far beyond the range of the data an elevation may go, as a share of that range.
 RANGE_SHARE = 0.5
+#: Points whose width is less than this share of their length say nothing across: one section, one line of holes.
+STRIP = 0.05
 #: Part of the study area, in percent, that the surface may leave uncovered.
 UNCOVERED = 0.1
 #: An edge shorter than this share of its patch has collapsed.
@@ -38,10 +40,11 @@ PIECES = 100
 
 
 def shape_checks(surface: FittedSurface, parts: Sequence[PatchLattice]) -> list[Check]:
-    """Look at the patches on their lattices: "normals", "patches", "elevation range", "area" where they apply."""
+    """Look at the patches on lattices: "normals", "patches", "elevation range", "strip", "area" where they apply."""
     checks = [_normals(surface, parts), _patches(surface)]
     if len(surface.points) and np.ptp(surface.points.xyz[:, 2]) > 0:
         checks.append(_elevation_range(surface, parts))
+    checks += _strip(surface, parts)
     if surface.outline is not None:
         checks.append(_area(surface))
     return checks
@@ -159,6 +162,33 @@ def _elevation_range(surface: FittedSurface, parts: Sequence[PatchLattice]) -> C
     text = message("data.elevations-beyond-data", "elevations reach {value:.1f} m beyond the data's range", value=value)
     where = _named(points[[worst]] + surface.origin) if value > limit else ()
     return Check("elevation range", value <= limit, value, limit, "m", text, where)
+
+
+def _strip(surface: FittedSurface, parts: Sequence[PatchLattice]) -> list[Check]:
+    """Ask whether the surface goes on aside from points that stand along one line, seen at right angles to it."""
+    if surface.frame == "sections" or len(surface.points) < 3:
+        return []
+    places, normal = lattice_places(parts)
+    if not len(places):
+        return []
+    up = np.array([0.0, 0.0, 1.0]) if surface.frame == "map" else _majority(normal)
+    flat = np.linalg.svd(up[None])[2][1:].T
+    points = (surface.points.xyz - surface.origin) @ flat
+    middle = points.mean(axis=0)
+    directions = np.linalg.eigh((points - middle).T @ (points - middle))[1]
+    across, along = np.ptp((points - middle) @ directions, axis=0)
+    wide = float(np.ptp((places @ flat - middle) @ directions[:, 0]))
+    if across >= STRIP * along or wide <= 2 * across:
+        return []
+    text = message(
+        "checks.points-along-a-line",
+        "the points lie along one line: {along:.1f} m long, {across:.1f} m wide; the surface is {wide:.1f} m wide, and "
+        "aside from the line nothing is known of it",
+        along=along,
+        across=across,
+        wide=wide,
+    )
+    return [Check("strip", False, float(across), STRIP * float(along), "m", text)]
 
 
 def _area(surface: FittedSurface) -> Check:

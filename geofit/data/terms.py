@@ -248,6 +248,7 @@ TERMS: frozenset[str] = frozenset(
         "start",
         "strata",
         "strike",
+        "strip",
         "study area",
         "suggested boreholes",
         "suggested hole",

@@ -35,8 +35,8 @@ def sections(lines, n=20, length=1000.0):
     return PointSet(np.concatenate(xyz), section=names, kind="section")
 
 
-def calm(surface, beyond=0.5):
-    """Nothing folded, open, or far out of the data's range."""
+def calm(surface, beyond=0.5, known=()):
+    """Nothing folded, open, or far out of the data's range; the checks that fail are ``known``."""
     accuracy = surface.accuracy
     assert np.isfinite(accuracy.residuals).all()
     for patch in surface.patches:
@@ -47,7 +47,7 @@ def calm(surface, beyond=0.5):
         assert z.min() > data.min() - margin
         assert z.max() < data.max() + margin
     failed = [c.name for c in accuracy.checks if c.passed is False and c.name != "interior tolerance"]
-    assert failed == []
+    assert failed == list(known)
 
 
 @pytest.mark.parametrize("n", [0, 1, 2])
@@ -111,7 +111,7 @@ def collinear(n, direction):
 def test_collinear_points_make_a_strip(n, direction, settings):
     surface = fit_horizon(collinear(n, direction), settings)
     assert surface.accuracy.passed
-    calm(surface, beyond=1.0)
+    calm(surface, beyond=1.0, known=["strip"])
 
 
 @pytest.mark.parametrize("n", [3, 7, 20, 41])
@@ -122,7 +122,7 @@ def test_collinear_points_are_interpolated(n):
 
 def test_an_interpolated_strip_is_level_across():
     for direction in ((1.0, 0.3), (1.0, 0.0)):
-        calm(fit_horizon(collinear(20, direction), ALL), beyond=1.0)
+        calm(fit_horizon(collinear(20, direction), ALL), beyond=1.0, known=["strip"])
 
 
 @pytest.mark.parametrize("n", [4, 20, 60])
@@ -186,7 +186,7 @@ def test_points_above_each_other_have_a_surface():
 def test_one_two_and_five_sections(lines, settings, across):
     surface = fit_horizon(sections(lines), FitSettings(core=settings.core, across=across))
     assert surface.accuracy.passed
-    calm(surface, beyond=1.0)
+    calm(surface, beyond=1.0, known=["strip"] if len(lines) == 1 else [])
     if settings.core == "all":
         assert surface.accuracy.max_abs < 1e-6
 
