@@ -134,7 +134,7 @@ def calibrate(
     area = np.bincount(KDTree(plane).query(places)[1], minlength=len(plane)).astype(float)
     by_area = np.concatenate([area[near.point], np.zeros(len(blocks.point))])
     by_likeness = _likeness(plane, every, places, variance)
-    weight = by_area / by_area.sum() + by_likeness / by_likeness.sum()
+    weight = _shares(by_area) + _shares(by_likeness)
     common = factor_for(every, 1.0, weight, SHARE)
     ratio = np.minimum(every.error**2 / (every.variance + every.noise), _CAP * common**2)
     n = len(plane)
@@ -155,6 +155,12 @@ def share_inside(error: Floats, variance: Floats) -> float:
 
 def _sums(point: Ints, values: Floats, n: int) -> Floats:
     return np.bincount(point, values, minlength=n).astype(np.float64, copy=False)
+
+
+def _shares(weight: Floats) -> Floats:
+    """Return weights whose sum is 1; alike where none counts, as where all points stand at one place."""
+    total = weight.sum()
+    return weight / total if total > 0 else np.full(len(weight), 1 / len(weight))
 
 
 def _likeness(plane: Floats, left: LeftOutPoints, places: Floats, variance: Floats) -> Floats:
