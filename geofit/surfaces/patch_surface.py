@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.columns import measurable_places
+from geofit.data.threads import one_thread
 from geofit.geometry.elevation import elevation
 from geofit.geometry.mesh import Mesh, Tolerance, triangulate, trim_to_outline
 from geofit.geometry.projection import Projection, project
@@ -78,5 +79,7 @@ class PatchSurface:
 
     def triangulate(self, tolerance: Tolerance = 0.05) -> Mesh:
         """Return triangles within a tolerance (m); see :func:`geofit.geometry.mesh.triangulate`."""
-        mesh = triangulate(self.patches, self.origin, tolerance)
-        return mesh if self.outline is None else trim_to_outline(mesh, self.patches, self.outline)
+        # A second thread waits longer for the many small products than it works.
+        with one_thread():
+            mesh = triangulate(self.patches, self.origin, tolerance)
+            return mesh if self.outline is None else trim_to_outline(mesh, self.patches, self.outline)
