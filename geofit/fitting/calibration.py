@@ -158,7 +158,7 @@ def _sums(point: Ints, values: Floats, n: int) -> Floats:
 
 
 def _shares(weight: Floats) -> Floats:
-    """Return weights whose sum is 1; alike where none counts, as where all points stand at one place."""
+    """Return weights whose sum is 1; alike where none counts, as where all points stand at one location."""
     total = weight.sum()
     return weight / total if total > 0 else np.full(len(weight), 1 / len(weight))
 
