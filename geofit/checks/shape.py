@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from geofit.checks.lattice import PatchLattice, lattice_places
 from geofit.data.accuracy import Check
+from geofit.data.long_arrays import blocks
 from geofit.data.messages import message
 from geofit.geometry.elevation import plan_map
 from geofit.geometry.trim_loops import inside_loops
@@ -173,11 +174,19 @@ def _strip(surface: FittedSurface, parts: Sequence[PatchLattice]) -> list[Check]
         return []
     up = np.array([0.0, 0.0, 1.0]) if surface.frame == "map" else _majority(normal)
     flat = np.linalg.svd(up[None])[2][1:].T
-    points = (surface.points.xyz - surface.origin) @ flat
-    middle = points.mean(axis=0)
-    directions = np.linalg.eigh((points - middle).T @ (points - middle))[1]
-    across, along = np.ptp((points - middle) @ directions, axis=0)
-    wide = float(np.ptp((places @ flat - middle) @ directions[:, 0]))
+    middle = places.mean(axis=0) @ flat
+
+    def in_plane() -> Iterator[Floats]:
+        # Some points at a time: all at once would take as much memory again as their coordinates.
+        for (some,) in blocks(surface.points.xyz):
+            yield (some - surface.origin) @ flat - middle
+
+    mean = sum((at.sum(axis=0) for at in in_plane()), np.zeros(2)) / len(surface.points)
+    spread = sum(((at - mean).T @ (at - mean) for at in in_plane()), np.zeros((2, 2)))
+    directions = np.linalg.eigh(spread)[1]
+    ends = np.array([(turned.min(axis=0), turned.max(axis=0)) for turned in (at @ directions for at in in_plane())])
+    across, along = ends[:, 1].max(axis=0) - ends[:, 0].min(axis=0)
+    wide = float(np.ptp(places @ flat @ directions[:, 0]))
     if across >= STRIP * along or wide <= 2 * across:
         return []
     text = message(
