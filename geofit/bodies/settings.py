@@ -47,7 +47,7 @@ class BodySettings:
         Points nearer to each other than this many metres are one point.
     kernel : {"r3", "r"}
         Radial function of the field: r^3 is smooth; r follows the data more tightly, has a kink at each contact and
-        takes no normals. On planted bodies those of r were 7 % too small on average.
+        takes no normals. It made planted bodies 7 % too small on average.
     dense : int
         Largest number of conditions that are solved at once; more are solved in overlapping parts.
     realizations : int

@@ -70,7 +70,7 @@ def read_source(
 
 
 def _like_collars(source: Path, columns: Mapping[str, str | None]) -> tuple[ImportIssue, ...]:
-    """Warn of a table of collars whose elevations nobody asked for: they are those of the ground, of no horizon."""
+    """Warn of a table of collars read as points: its elevations are those of the ground, not of a horizon."""
     from geofit.data.site import ImportIssue
     from geofit.io.preview import preview_file
 

@@ -45,18 +45,18 @@ def clip(points: Floats, triangles: Ints, uv: Floats, *outlines: Floats) -> tupl
     rings = [_distinct(outline) for outline in outlines]
     plan = np.ascontiguousarray(points[:, :2])
     corners = [plan[triangles[:, k]] for k in range(3)]
-    beside = [own for ring in rings for own in _touched(corners, ring)]
+    candidates = [own for ring in rings for own in _touched(corners, ring)]
     touched = np.zeros(len(triangles), bool)
-    touched[np.concatenate(beside)] = True
+    touched[np.concatenate(candidates)] = True
     rest, near = np.flatnonzero(~touched), np.flatnonzero(touched)
     # Only the triangles along the outlines are worked on, with their own vertices.
     used, numbers = np.unique(triangles[near], return_inverse=True)
     work = _Work(points[used], numbers.reshape(-1, 3), uv[near])
-    beside = [np.searchsorted(near, own) for own in beside]
+    candidates = [np.searchsorted(near, own) for own in candidates]
     starts, ends = np.concatenate(rings), np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
-    for corner, own in zip(starts, beside, strict=True):
+    for corner, own in zip(starts, candidates, strict=True):
         work.insert(corner, own)
-    for start, end, own in zip(starts, ends, beside, strict=True):
+    for start, end, own in zip(starts, ends, candidates, strict=True):
         work.split(start, end, own)
     made = len(work.points) - len(used)
     back = np.concatenate([used, len(points) + np.arange(made)])
@@ -75,7 +75,7 @@ def _touched(corners: list[Floats], outline: Floats) -> list[Ints]:
     a, b, c = corners
     low, high = np.minimum(np.minimum(a, b), c) - ON, np.maximum(np.maximum(a, b), c) + ON
     known = np.flatnonzero(_Raster(outline).near(low, high))
-    # From south to north: those beside a side follow each other.
+    # From south to north, so that the triangles along a side are a slice.
     known = known[np.argsort(low[known, 1], kind="stable")]
     low, high, plan = low[known], high[known], np.stack([a[known], b[known], c[known]], axis=1)
     tallest = float((high - low)[:, 1].max(initial=0.0))
@@ -91,13 +91,13 @@ def _touched(corners: list[Floats], outline: Floats) -> list[Ints]:
 
 
 class _Raster:
-    """The cells of a grid that an outline runs through or beside: of many triangles it is far from nearly all."""
+    """The cells of a grid that an outline runs through or next to: of many triangles it is far from nearly all."""
 
     def __init__(self, outline: Floats) -> None:
         self._low = outline.min(axis=0)
         self._cell = max(float(np.ptp(outline, axis=0).max()) / CELLS, 100 * ON)
         way = np.roll(outline, -1, axis=0) - outline
-        # Places half a cell apart: what lies between two of them is in their cells or beside these.
+        # Places half a cell apart: what lies between two of them is in their cells or next to these.
         pieces = 1 + (2 * np.linalg.norm(way, axis=1) / self._cell).astype(np.int64)
         number = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
         share = (number / np.repeat(pieces, pieces))[:, None]
@@ -192,9 +192,9 @@ class _Work:
     def parent(self) -> Ints:
         return self._parent.filled
 
-    def insert(self, corner: Floats, beside: Ints) -> None:
-        """Make a corner of the outline a vertex of every sheet over it; only triangles ``beside`` it can be."""
-        pieces = self._pieces(beside)
+    def insert(self, corner: Floats, candidates: Ints) -> None:
+        """Make a corner of the outline a vertex of every sheet over it; only ``candidates`` may hold it."""
+        pieces = self._pieces(candidates)
         corners = self.points[self.triangles[pieces], :2]
         near = (corners.min(axis=1) - ON <= corner).all(axis=1) & (corners.max(axis=1) + ON >= corner).all(axis=1)
         divided: dict[tuple[int, int], int] = {}
@@ -218,11 +218,11 @@ class _Work:
                 number = self._new(share @ self.points[self.triangles[k]], corner)
                 self._fan(int(k), number, share)
 
-    def split(self, start: Floats, end: Floats, beside: Ints) -> None:
-        """Cut triangles along one side of the outline; only those ``beside`` it are run through."""
+    def split(self, start: Floats, end: Floats, candidates: Ints) -> None:
+        """Cut triangles along one side of the outline; ``candidates`` are those that it may run through."""
         length = np.linalg.norm(end - start)
         direction = (end - start) / length
-        pieces = self._pieces(beside)
+        pieces = self._pieces(candidates)
         x, y = np.moveaxis(self.points[self.triangles[pieces], :2] - start, 2, 0)
         offs, alongs = direction[0] * y - direction[1] * x, direction[0] * x + direction[1] * y
         signs = np.where(np.abs(offs) <= ON, 0, np.sign(offs)).astype(int)
