@@ -208,7 +208,7 @@ def _through_points(
     plane = data.plane[chosen]
     pairs = neighbour_pairs(plane)
     breaks, counted = _breaks(plane, pairs, data.area, degree, core, longest, lines, most, closer)
-    if longest_span(coarse) > SIMPLE:
+    if longest_span(coarse) > SIMPLE or field.alpha > degree:
         base = coarse
     else:
         some = [bspline.clamped_knots(some_breaks(along, min(FIELD_SPAN, longest)), degree) for along in breaks]

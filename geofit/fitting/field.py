@@ -24,12 +24,13 @@ from geofit.fitting.likelihood import FINEST, UNSOLVABLE, Likelihood, Optimum, S
 from geofit.fitting.slopes import Slopes
 from geofit.splines import bspline
 from geofit.splines.matern import MaternPrecision
-from geofit.splines.tensor import Factor, TensorSpace
+from geofit.splines.tensor import Factor, TensorSpace, band_sum
 
 __all__ = [
     "ENOUGH",
     "FieldChoice",
     "Smoothed",
+    "as_smooth",
     "choose_covariance",
     "drift_of",
     "plane_trend",
@@ -56,6 +57,10 @@ _BEYOND, _GROWTH = 1.5, 1.5
 _KAPPAS, _LOG_RHOS = (0.1, 0.7), (-10.0, -6.0, -2.0)
 #: First steps from there: to the next start, whose value is known.
 _BETWEEN = (math.log(_KAPPAS[1] / _KAPPAS[0]), _LOG_RHOS[1] - _LOG_RHOS[0], 0.0, 0.0)
+#: The smoothness to try where one is the best of those that are always compared.
+SMOOTHER = {3: 6}
+#: First steps from the one to the other.
+_NEAR = (0.35, 1.5, 0.0, 0.0)
 #: Stretches that the search for a direction starts from.
 _STRETCHES = ((0.0, 0.0), (0.2, 0.0), (-0.2, 0.0), (0.0, 0.2), (0.0, -0.2))
 #: Rounds of the search over kappa and rho, over all parameters, and on a finer space; first steps there: the range is
@@ -95,10 +100,24 @@ class FieldChoice:
         """Weight of the field's energy against squared misfits."""
         return self.rho
 
+    def at_most(self, alpha: int) -> FieldChoice:
+        """Return the field, or one of the same variance and correlation length that is no smoother than ``alpha``."""
+        if self.alpha <= alpha:
+            return self
+        kappa, rho = as_smooth(self.kappa, self.rho, self.alpha, alpha)
+        return replace(self, alpha=alpha, kappa=kappa, rho=rho)
+
     @property
     def turned(self) -> FieldChoice:
         """The same field with u and v exchanged."""
         return replace(self, stretch=(-self.stretch[0], self.stretch[1]))
+
+
+def as_smooth(kappa: float, rho: float, alpha: int, other: int) -> tuple[float, float]:
+    """Return kappa and rho of a field of another exponent, of the same variance and correlation length."""
+    old, new = alpha - 1, other - 1
+    found = kappa * math.sqrt(new / old)
+    return found, rho * old * kappa ** (2 * old) / (new * found ** (2 * new))
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,8 +263,9 @@ def choose_covariance(
         found, rival = [], math.inf
         for guess in known:
             start = (math.log(guess.kappa), math.log(guess.rho), *guess.stretch)
-            found.append(likelihood(guess.alpha).best([start], free, _AGAIN, _NEARBY, rival))
-            rival = min(rival, found[-1].value)
+            smoother = guess.alpha > space.degree
+            found.append(likelihood(guess.alpha).best([start], free, _AGAIN, _NEARBY, math.inf if smoother else rival))
+            rival = rival if smoother else min(rival, found[-1].value)
     else:
         found = _search(likelihood, space.degree, len(plane), log_rho)
     found = sorted(found, key=lambda one: one.value)
@@ -270,7 +290,7 @@ def choose_covariance(
 
 
 def _search(likelihood: Callable[[int], Likelihood], degree: int, n: int, log_rho: float | None) -> list[Optimum]:
-    """Compare the smoothnesses without a direction, then give the better one its direction."""
+    """Compare the smoothnesses without a direction, give the better one its direction, and try a smoother one."""
     few = n < ENOUGH
     alphas = {3: (2,) if few else (3, 2), 2: (2,)}.get(degree, (1,))
     logs, free = (_LOG_RHOS, 2) if log_rho is None else ((log_rho,), 1)
@@ -287,7 +307,13 @@ def _search(likelihood: Callable[[int], Likelihood], degree: int, n: int, log_rh
         return [best]
     starts = [(math.log(best.kappa), math.log(best.rho), *stretch) for stretch in _STRETCHES]
     best = min(best, judge.best(starts, 0 if log_rho is not None else 4, _LAST), key=lambda one: one.value)
-    return [best, *(replace(other, stretch=best.stretch) for other, _ in found[1:])]
+    fields = [best, *(replace(other, stretch=best.stretch) for other, _ in found[1:])]
+    if best.alpha in SMOOTHER and log_rho is None:
+        alpha = SMOOTHER[best.alpha]
+        kappa, rho = (math.log(one) for one in as_smooth(best.kappa, best.rho, best.alpha, alpha))
+        turned = [(kappa, rho, *stretch) for stretch in (best.stretch, (0.0, 0.0))]
+        fields.append(likelihood(alpha).best(turned, free, _FIRST, _NEAR))
+    return fields
 
 
 def widened_space(space: TensorSpace) -> TensorSpace:
@@ -344,7 +370,7 @@ def smooth(
         of_slopes = measured.equations(wide, field.noise)
         band, right = band + of_slopes[0], right + of_slopes[1]
     precision, slope = MaternPrecision(wide, field.alpha), slope_of(plane, trend, measured)
-    band += field.rho * precision.band(field.kappa, field.stretch)
+    band = band_sum(band, field.rho * precision.band(field.kappa, field.stretch))
     held = field.rho * precision.times_planes(field.kappa, field.stretch) @ slope.directions
     columns = right.reshape(len(right), -1)
     solved = Factor(band).solve(np.column_stack([columns, held]))

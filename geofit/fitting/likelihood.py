@@ -23,7 +23,7 @@ from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 
 from geofit.splines import bspline
 from geofit.splines.matern import MaternPrecision
-from geofit.splines.tensor import TensorSpace
+from geofit.splines.tensor import TensorSpace, band_sum
 
 __all__ = ["Likelihood", "Optimum", "Slope", "plane_coefficients"]
 
@@ -31,13 +31,15 @@ Floats = NDArray[np.float64]
 
 #: Range of the logarithm of kappa per unit of the points' spacing, and of that of rho.
 LOG_KAPPA, LOG_RHO = (math.log(0.003), math.log(4.0)), (-16.0, 6.0)
+#: How much farther down log rho goes for fields whose form is applied twice.
+SMALLER = 12.0
 #: Largest part of the stretch: beyond it, sections alone can talk the likelihood into ridges that no hole between them
 #: has seen.
 STRETCH = 0.3
-#: Least kappa per unit of the fields that are bent less than a thin plate between their points: of a longer range they
-#: run on as parabolas where no points are.
+#: Least kappa per unit of the fields that are bent less than a thin plate between their points, for each time that
+#: their form is applied: of a longer range they run on as parabolas where no points are.
 CURVED = 0.5
-#: (kappa * span)^(2 alpha) below which E is singular to working precision.
+#: (kappa * span)^(2 order) below which the form is singular to working precision.
 _LEAST = 1e-11
 #: No elevation is known better than this, metres: keeps the likelihood finite on exact planes.
 FINEST = 1e-4
@@ -133,8 +135,10 @@ class Likelihood:
         self.floor = n * self.columns.shape[1] * FINEST**2
         spans = [np.diff(np.unique(knots)) for knots in (space.knots_u, space.knots_v)]
         span = math.sqrt(float(np.median(spans[0])) * float(np.median(spans[1])))
-        least = math.log(CURVED) if alpha > 2 else LOG_KAPPA[0]
-        self.least = max(least, math.log(_LEAST) / (2 * alpha) - math.log(span))
+        least = math.log(CURVED * self.precision.power) if alpha > 2 else LOG_KAPPA[0]
+        self.least = max(least, math.log(_LEAST) / (2 * self.precision.order) - math.log(span))
+        # kappa^(2 nu) is part of rho.
+        self.rhos = (LOG_RHO[0] - SMALLER * (self.precision.power - 1), LOG_RHO[1])
         self._known: dict[tuple[float, ...], tuple[float, float, float]] = {}
         self._priors: dict[tuple[float, ...], tuple[Floats, Floats, float]] = {}
 
@@ -153,16 +157,17 @@ class Likelihood:
         key = (log_kappa, *stretch)
         if key not in self._priors:
             energy = self.precision.band(math.exp(log_kappa), stretch)
-            lower = cholesky_banded(energy, lower=True, check_finite=False)
             bent = self.precision.times_planes(math.exp(log_kappa), stretch) @ self.slope.directions
-            self._priors = {key: (energy, bent, 2 * float(np.log(lower[0]).sum()))}
+            self._priors = {key: (energy, bent, self.precision.logdet(math.exp(log_kappa), stretch))}
         return self._priors[key]
 
     def _evaluate(self, key: tuple[float, ...]) -> tuple[float, float, float]:
         rho = math.exp(key[1])
         try:
             energy, bent, determinant = self._prior(key[0], (key[2], key[3]))
-            lower = cholesky_banded(self.band + rho * energy, lower=True, overwrite_ab=True, check_finite=False)
+            lower = cholesky_banded(
+                band_sum(rho * energy, self.band), lower=True, overwrite_ab=True, check_finite=False
+            )
         except LinAlgError:
             return UNSOLVABLE, math.nan, 0.0
         held = rho * bent
@@ -210,7 +215,7 @@ class Likelihood:
 
     def bounds(self) -> list[tuple[float, float]]:
         """Return the bounds of (log kappa, log rho, p, q)."""
-        return [(self.least, LOG_KAPPA[1]), LOG_RHO, (-STRETCH, STRETCH), (-STRETCH, STRETCH)]
+        return [(self.least, LOG_KAPPA[1]), self.rhos, (-STRETCH, STRETCH), (-STRETCH, STRETCH)]
 
     def best(
         self,

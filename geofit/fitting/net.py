@@ -209,7 +209,8 @@ class Periphery:
         rest = data.value[:][self.outer] - np.column_stack([np.ones(len(plane)), plane]) @ start.plane
         frozen = self._frozen(space)
         weight = 1 / relative_noise(data.accuracy)[self.outer] ** 2
-        energy = precision_band(space, self.field)
+        # The spans next to a core are of any length, which a form applied twice does not bear.
+        energy = precision_band(space, self.field.at_most(space.degree))
         return over + solved_beside(space, energy, start.coefficients - over, frozen, plane, rest, weight)
 
     def _limit(self, misfit: Floats) -> float:

@@ -25,7 +25,7 @@ from geofit.fitting.model import Model
 from geofit.fitting.resolution import even_space
 from geofit.splines.blocks import BlockFactor, InverseBlocks
 from geofit.splines.matern import MaternPrecision
-from geofit.splines.tensor import TensorSpace
+from geofit.splines.tensor import TensorSpace, band_sum
 
 __all__ = ["Posterior", "posterior"]
 
@@ -177,7 +177,7 @@ def posterior(model: Model) -> Posterior:
     precision, slope = MaternPrecision(space, field.alpha), slope_of(plane, trend, measured)
     prior = field.rho * precision.band(field.kappa, field.stretch)
     held = field.rho * precision.times_planes(field.kappa, field.stretch) @ slope.directions
-    factor = BlockFactor(band + prior)
+    factor = BlockFactor(band_sum(band, prior))
     solved = factor.solve(np.column_stack([right, held]))
     free, drift = solved[:, :1], solved[:, 1:]
     moment, cross = planes_of(space, slope, field.hold, held, free, drift)

@@ -44,8 +44,8 @@ class Level:
     value: float
 
 
-#: What finds the best field on a space, given fields to begin with.
-Search = Callable[[TensorSpace, Sequence[FieldChoice]], Level]
+#: What finds the fields on a space, the best first, given those to begin with.
+Search = Callable[[TensorSpace, Sequence[FieldChoice]], list[Level]]
 
 
 def even_space(area: Rectangle, span: float, degree: int, most: int) -> TensorSpace:
@@ -74,21 +74,33 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldCho
     limit = min(most, LAST_LEVEL)
     space, sketch = (even_space(data.area, EVEN, degree, size) for size in (min(FIRST_LEVEL, limit), SKETCH))
 
-    def on(space: TensorSpace, known: Sequence[FieldChoice]) -> Level:
-        field, value = choose_covariance(space, data.plane, data.value, noise, given, known, data.trend)[0]
-        return Level(space, field, value)
+    def on(space: TensorSpace, known: Sequence[FieldChoice]) -> list[Level]:
+        found = choose_covariance(space, data.plane, data.value, noise, given, known, data.trend)
+        return [Level(space, field, value) for field, value in found]
+
+    def resolved(first: Level) -> Level:
+        best = _lengthened(first, _coarser(data.area, degree, first.space.size), on)
+        if best is first:
+            # Groups of points need no shorter spans for a field smoother than the splines, unless longer ones cut it.
+            settled = first.field.alpha > degree and known and known[0].noise < LOUDER * first.field.noise
+            best = _shortened(first, _finer(data.area, degree, limit, EVEN if settled else CLOSE), on)
+            if best is not first:
+                best = _lengthened(best, _coarser(data.area, degree, best.space.size), on)
+        return best
 
     known: list[FieldChoice] = []
     if sketch.size < space.size:
         some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
         found = choose_covariance(sketch, data.plane[some], data.value[some], noise[some], given, (), data.trend)
         known = [one for one, _ in found]
-    first = on(space, known)
-    best = _lengthened(first, _coarser(data.area, degree, first.space.size), on)
-    if best is first:
-        best = _shortened(first, _finer(data.area, degree, limit), on)
-        if best is not first:
-            best = _lengthened(best, _coarser(data.area, degree, best.space.size), on)
+    firsts = on(space, known)
+    # What is relief to a rougher field on finer spans may pass for noise about a smoother one.
+    rivals = [
+        one
+        for one in firsts
+        if one.field.alpha <= degree < firsts[0].field.alpha and LOUDER * one.field.noise < firsts[0].field.noise
+    ]
+    best = min((resolved(one) for one in (firsts[0], *rivals[:1])), key=lambda level: level.value)
     space, field = best.space, best.field
     if data.slopes is not None and len(data.slopes):
         field = choose_covariance(
@@ -104,7 +116,7 @@ def _lengthened(best: Level, coarser: Iterable[TensorSpace], on: Search) -> Leve
     """
     simplest = best
     for space in coarser:
-        level = on(space, [simplest.field])
+        level = on(space, [simplest.field])[0]
         if level.value > simplest.value or level.field.noise > LOUDER * best.field.noise:
             break
         simplest = level
@@ -116,20 +128,20 @@ def _shortened(best: Level, finer: Iterable[TensorSpace], on: Search) -> Level:
     for space in finer:
         if space.size < 1.3 * best.space.size:
             continue
-        level = on(space, [best.field])
+        level = on(space, [best.field])[0]
         if level.value > best.value - GAIN:
             break
         best = level
     return best
 
 
-def _finer(area: Rectangle, degree: int, limit: int) -> Iterator[TensorSpace]:
-    """Yield spaces of ever shorter spans: down to those of evenly spaced points, then that of points in groups."""
+def _finer(area: Rectangle, degree: int, limit: int, closest: float) -> Iterator[TensorSpace]:
+    """Yield spaces of ever shorter spans: down to those of evenly spaced points, then that of the shortest."""
     count = FIRST_LEVEL
     while 2 * count <= limit:
         count *= 2
         yield even_space(area, EVEN, degree, count)
-    yield even_space(area, CLOSE, degree, limit)
+    yield even_space(area, closest, degree, limit)
 
 
 def _coarser(area: Rectangle, degree: int, size: int) -> Iterator[TensorSpace]:

@@ -10,6 +10,9 @@ E_m is a positive form of the derivatives of order m; with kappa -> 0 and alpha 
 In terms of how many of the indices are v, k of the i and n of the j, the weight of f_(u^(m-k) v^k) f_(u^(m-n) v^n) is
 the coefficient of x^k y^n in (a + b x + b y + c x y)^m for H = [[a, b], [b, c]]. Each term is a Kronecker product of
 the Gram matrices of both directions.
+
+Splines of degree p have no derivatives of an order beyond p. The operator of the exponent 2 p is that of p applied
+twice (Lindgren et al., sec. 2.3): E = F D^-1 F, where F is the matrix of p, and D the lumped Gram matrix of the basis.
 """
 
 from __future__ import annotations
@@ -19,6 +22,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import cholesky_banded
 
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
@@ -42,44 +46,58 @@ class MaternPrecision:
     Parameters
     ----------
     space : TensorSpace
-        The space; its degree must be at least ``alpha``.
+        The space.
     alpha : int
-        Exponent of the operator kappa^2 - div H grad; the smoothness nu of the field is alpha - 1.
+        Exponent of the operator kappa^2 - div H grad; the smoothness nu of the field is alpha - 1. At most the degree
+        of the space, or twice that.
     """
 
     def __init__(self, space: TensorSpace, alpha: int) -> None:
         self.space, self.alpha = space, alpha
+        #: Exponent of the form F, made of derivatives, and how many times it is applied.
+        self.order = min(alpha, space.degree)
+        self.power = alpha // self.order
+        self._last: tuple[tuple[float, tuple[float, float]], Floats] = (math.nan, (0.0, 0.0)), np.empty(0)
 
     @cached_property
     def _terms(self) -> list[tuple[int, int, int]]:
-        return [(m, k, n) for m in range(self.alpha + 1) for k in range(m + 1) for n in range(m + 1)]
+        return [(m, k, n) for m in range(self.order + 1) for k in range(m + 1) for n in range(m + 1)]
 
     @cached_property
     def _factors(self) -> tuple[Floats, Floats]:
-        """Diagonals of the factors of each term: (terms, (p + 1) nu) at and below, (terms, (2 p + 1) nv) of all."""
-        p, (gu, gv) = self.space.degree, self.space.gram_diagonals
+        """Diagonals of the factors of each term of F, upmost first: (terms, 2 p + 1, nu), (terms, 2 p + 1, nv)."""
+        gu, gv = self.space.gram_diagonals
         m, k, n = np.array(self._terms).T
-        return gu[m - k, m - n, p:].reshape(len(m), -1), gv[k, n].reshape(len(m), -1)
+        return gu[m - k, m - n], gv[k, n]
+
+    @cached_property
+    def _masses(self) -> Floats:
+        """Return (nu, nv) the diagonal of D: the integrals of the basis functions."""
+        p = self.space.degree
+        along, across = (
+            (knots[p + 1 :] - knots[: -p - 1]) / (p + 1) for knots in (self.space.knots_u, self.space.knots_v)
+        )
+        return np.outer(along, across)
 
     @cached_property
     def _of_planes(self) -> Floats:
-        """Return (terms, size, 3) each term times the coefficients of 1, u and v; those of order 2 and more vanish."""
+        """Return (terms, nu, nv, 3) each term times the coefficients of 1, u, v; those of order 2 and more vanish."""
         p, (gu, gv) = self.space.degree, self.space.gram_diagonals
         u, v = (bspline.greville(knots, p) for knots in (self.space.knots_u, self.space.knots_v))
         planes = ((np.ones_like(u), np.ones_like(v)), (u, np.ones_like(v)), (np.ones_like(u), v))
         terms = [(m, k, n) for m, k, n in self._terms if m < 2]
         products = [
-            [np.outer(_times(gu[m - k, m - n], along), _times(gv[k, n], across)).ravel() for along, across in planes]
+            [np.outer(_times(gu[m - k, m - n], along), _times(gv[k, n], across)) for along, across in planes]
             for m, k, n in terms
         ]
-        return np.ascontiguousarray(np.swapaxes(np.array(products), 1, 2))
+        return np.ascontiguousarray(np.moveaxis(np.array(products), 1, 3))
 
-    def weights(self, kappa: float, stretch: tuple[float, float]) -> Floats:
-        """Return the weight of each term."""
+    def _weights(self, kappa: float, stretch: tuple[float, float]) -> Floats:
+        """Return the weight of each term of F."""
         a, b, c = metric(stretch)
         power = np.ones((1, 1))
         tables = []
-        for _ in range(self.alpha + 1):
+        for _ in range(self.order + 1):
             tables.append(power)
             grown = np.zeros((len(power) + 1, len(power) + 1))
             grown[:-1, :-1] += a * power
@@ -87,26 +105,84 @@ class MaternPrecision:
             grown[:-1, 1:] += b * power
             grown[1:, 1:] += c * power
             power = grown
-        order = [math.comb(self.alpha, m) * kappa ** (2 * (self.alpha - m)) for m in range(self.alpha + 1)]
+        order = [math.comb(self.order, m) * kappa ** (2 * (self.order - m)) for m in range(self.order + 1)]
         return np.array([order[m] * tables[m][k, n] for m, k, n in self._terms])
 
+    def _form(self, kappa: float, stretch: tuple[float, float]) -> Floats:
+        """Return F, (2 p + 1, nu, 2 p + 1, nv); the last one is kept.
+
+        Entry (a, i, b, j) couples control point (i + a - p, j + b - p) with (i, j).
+        """
+        if (kappa, stretch) != self._last[0]:
+            width, (nu, nv) = 2 * self.space.degree + 1, self.space.shape
+            along, across = (factor.reshape(len(factor), -1) for factor in self._factors)
+            form = (along * self._weights(kappa, stretch)[:, None]).T @ across
+            self._last = (kappa, stretch), form.reshape(width, nu, width, nv)
+        return self._last[1]
+
     def band(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> Floats:
-        """Return the band of E, (bandwidth + 1, size), for a kappa per unit of length and a stretch (see `metric`)."""
-        p, (nu, nv) = self.space.degree, self.space.shape
-        along, across = self._factors
-        blocks = ((along * self.weights(kappa, stretch)[:, None]).T @ across).reshape(p + 1, nu, 2 * p + 1, nv)
+        """Return the band of E for a kappa per unit of length and a stretch (see `metric`), (bandwidth + 1, size).
+
+        It is wider than the space's own where the exponent is beyond the degree.
+        """
+        blocks = form = self._form(kappa, stretch)
+        for _ in range(self.power - 1):
+            blocks = _product(form, self._masses, blocks)
+        return self._banded(blocks)
+
+    def _banded(self, blocks: Floats) -> Floats:
+        """Return the band of couplings, (2 r + 1, nu, 2 r + 1, nv)."""
+        reach, (nu, nv) = len(blocks) // 2, self.space.shape
         # Column by column, as LAPACK takes it.
-        band = np.zeros((nu, nv, self.space.bandwidth + 1))
-        for a in range(p + 1):
-            for b in range(-p, p + 1):
-                if a * nv + b >= 0:
-                    band[:, :, a * nv + b] += blocks[a, :, b + p]
-        return band.reshape(self.space.size, self.space.bandwidth + 1).T
+        width = min(reach * nv + reach, self.space.size - 1) + 1
+        band = np.zeros((nu, nv, width))
+        for a in range(reach + 1):
+            for b in range(-reach, reach + 1):
+                if 0 <= a * nv + b < width:
+                    band[:, :, a * nv + b] += blocks[reach + a, :, b + reach]
+        return band.reshape(self.space.size, width).T
+
+    def logdet(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> float:
+        """Return the logarithm of the determinant of E.
+
+        Raises
+        ------
+        scipy.linalg.LinAlgError
+            If F is not positive definite to working precision.
+        """
+        form = self._banded(self._form(kappa, stretch))
+        lower = cholesky_banded(form, lower=True, overwrite_ab=True, check_finite=False)
+        return float(self.power * 2 * np.log(lower[0]).sum() - (self.power - 1) * np.log(self._masses).sum())
 
     def times_planes(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> Floats:
         """Return E times the coefficients of 1, u and v, (size, 3)."""
         terms = self._of_planes
-        return np.asarray(np.tensordot(self.weights(kappa, stretch)[: len(terms)], terms, axes=1))
+        flat = np.tensordot(self._weights(kappa, stretch)[: len(terms)], terms, axes=1)
+        for _ in range(self.power - 1):
+            flat = _applied(self._form(kappa, stretch), flat / self._masses[..., None])
+        return np.asarray(flat.reshape(-1, 3))
+
+
+def _product(form: Floats, mass: Floats, other: Floats) -> Floats:
+    """Return F D^-1 G of couplings F, (2 p + 1, nu, 2 p + 1, nv), masses D, (nu, nv), and wider couplings G."""
+    p, q, (nu, nv) = len(form) // 2, len(other) // 2, mass.shape
+    over = np.pad(form / mass[:, None], ((0, 0), (q, q), (0, 0), (q, q)))
+    result = np.zeros((2 * (p + q) + 1, nu, 2 * (p + q) + 1, nv))
+    for a in range(2 * q + 1):
+        for b in range(2 * q + 1):
+            met = over[:, a : a + nu, :, b : b + nv]
+            result[a : a + 2 * p + 1, :, b : b + 2 * p + 1] += met * other[a, :, b][:, None]
+    return result
+
+
+def _applied(form: Floats, net: Floats) -> Floats:
+    """Return couplings, (2 p + 1, nu, 2 p + 1, nv), times a net, (nu, nv, k)."""
+    p, (nu, nv) = len(form) // 2, net.shape[:2]
+    result = np.zeros((nu + 2 * p, nv + 2 * p, net.shape[2]))
+    for a in range(2 * p + 1):
+        for b in range(2 * p + 1):
+            result[a : a + nu, b : b + nv] += form[a, :, b, :, None] * net
+    return result[p : p + nu, p : p + nv]
 
 
 def _times(diagonals: Floats, x: Floats) -> Floats:

@@ -24,7 +24,7 @@ from geofit.data.messages import message
 from geofit.splines import bspline
 from geofit.splines.sums import CellSums, cell_sums
 
-__all__ = ["Factor", "TensorSpace", "band_times"]
+__all__ = ["Factor", "TensorSpace", "band_sum", "band_times"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -219,6 +219,15 @@ class Factor:
     def logdet(self) -> float:
         """Logarithm of the determinant of the matrix."""
         return float(2 * np.log(self._band[0]).sum() - 2 * np.log(self._scale).sum())
+
+
+def band_sum(one: Floats, other: Floats) -> Floats:
+    """Return the sum of two symmetric banded matrices of one size, whose bands may differ in width."""
+    wide, narrow = (one, other) if len(one) >= len(other) else (other, one)
+    # Column by column, as LAPACK takes it.
+    result = np.array(wide, order="F")
+    result[: len(narrow)] += narrow
+    return result
 
 
 def band_times(band: Floats, x: Floats) -> Floats:

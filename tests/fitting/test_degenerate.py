@@ -207,8 +207,8 @@ def test_a_cluster_far_away_is_met_or_told(away):
     z = np.concatenate([(patch.control[..., 2] + surface.origin[2]).ravel() for patch in surface.patches])
     if z.min() < low - 2 * (high - low) or z.max() > high + 2 * (high - low):
         assert checks["elevation range"].passed is False
-    if surface.accuracy.max_abs > 0.1:
-        assert checks["interior tolerance"].passed is False
+    if surface.accuracy.max_abs > 0.1 and checks["interior tolerance"].passed is not False:
+        assert any(note.code == "fitting.points-beyond-tolerance-as-noise" for note in surface.model.net.notes)
 
 
 def test_a_small_core_in_a_wide_area_has_no_gaps():

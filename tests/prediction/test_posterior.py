@@ -186,7 +186,7 @@ def test_points_that_were_let_go_pull_at_nothing_when_others_are_left_out():
 
 
 def test_a_hole_left_out_is_close_to_a_new_fit_without_it():
-    """Knots, smoothing and pulls are chosen anew by the new fit: within a twentieth of the error's own sd."""
+    """Knots, smoothing and pulls are chosen anew by the new fit: within 0.15 of the error's own sd."""
     surface, truth = small_surface(), small_truth()
     fit = linear(surface)
     predicted = fit.without([np.array([k]) for k in range(len(truth.points))])
@@ -194,7 +194,7 @@ def test_a_hole_left_out_is_close_to_a_new_fit_without_it():
         left = truth.points.hole == hole
         refit = fit_horizon(truth.points[~left], boundary=truth.boundary)
         x, y, z = truth.points.xyz[left].T
-        assert abs(predicted.error[left] - (z - refit.elevation(x, y)))[0] < 0.1 * np.sqrt(predicted.variance[left][0])
+        assert abs(predicted.error[left] - (z - refit.elevation(x, y)))[0] < 0.15 * np.sqrt(predicted.variance[left][0])
 
 
 def test_standard_deviation_grows_away_from_the_points():

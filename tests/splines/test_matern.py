@@ -79,11 +79,11 @@ def test_a_stretch_against_numerical_integration(alpha):
 
 @pytest.mark.parametrize("stretch", [(0.0, 0.0), (0.8, 0.5)])
 def test_the_precision_is_positive_definite(stretch):
-    for alpha in (1, 2, 3):
+    for alpha in (1, 2, 3, 6):
         assert np.linalg.eigvalsh(dense(MaternPrecision(space_of(), alpha).band(0.5, stretch)))[0] > 0
 
 
-@pytest.mark.parametrize("alpha", [2, 3])
+@pytest.mark.parametrize("alpha", [2, 3, 6])
 def test_its_inverse_is_the_matern_covariance(alpha):
     """Whittle's covariance of variance 1 / (4 pi nu kappa^(2 nu)), far from the edges of the space."""
     space, kappa, nu = space_of(10.0, 10.0, 0.25), 1.5, alpha - 1
@@ -93,3 +93,25 @@ def test_its_inverse_is_the_matern_covariance(alpha):
     t = kappa * np.array([1e-9, 0.5, 1.0, 2.0])
     shape = 2 ** (1 - nu) / gamma(nu) * t**nu * kv(nu, t)
     assert found == pytest.approx(shape / (4 * np.pi * nu * kappa ** (2 * nu)), rel=0.05)
+
+
+@pytest.mark.parametrize("alpha", [1, 2, 3, 6])
+def test_the_determinant_and_the_product_with_planes_are_those_of_the_matrix(alpha):
+    space, kappa, stretch = space_of(4.0, 3.0), 0.9, (0.2, -0.1)
+    precision = MaternPrecision(space, alpha)
+    matrix = dense(precision.band(kappa, stretch))
+    assert precision.logdet(kappa, stretch) == pytest.approx(np.linalg.slogdet(matrix)[1], rel=1e-9)
+    u, v = (bspline.greville(knots, 3) for knots in (space.knots_u, space.knots_v))
+    planes = np.stack([np.ones(space.shape), *np.meshgrid(u, v, indexing="ij")], axis=-1).reshape(-1, 3)
+    size = np.abs(matrix) @ np.abs(planes)
+    np.testing.assert_allclose((precision.times_planes(kappa, stretch) - matrix @ planes) / size, 0, atol=1e-12)
+
+
+def test_a_form_applied_twice_is_the_product_of_dense_matrices():
+    space, kappa, stretch = space_of(3.0, 4.0), 1.1, (-0.2, 0.1)
+    form = dense(MaternPrecision(space, 3).band(kappa, stretch))
+    at = np.stack(np.meshgrid(np.arange(0.005, 3, 0.01), np.arange(0.005, 4, 0.01), indexing="ij"), axis=-1)
+    masses = 1e-4 * space.matrix(at.reshape(-1, 2)).sum(axis=0)
+    expected = form @ (form / masses[:, None])
+    found = dense(MaternPrecision(space, 6).band(kappa, stretch))
+    np.testing.assert_allclose(found, expected, atol=1e-3 * np.abs(expected).max())
