@@ -52,7 +52,7 @@ def load_adit_contacts(
     name, s = rows.text("adit"), rows.numbers("chainage")
     horizon = horizons.of(rows)
     paths = {adit.name: adit for adit in adits}
-    rows.require_known("adit", name, paths, "adit path table")
+    name = rows.require_known("adit", name, paths, "adit path table")
     xyz = np.zeros((len(rows), 3))
     for i in np.flatnonzero(rows.ok).tolist():
         adit = paths[name[i]]

@@ -10,7 +10,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.io.sniff import decode
+from geofit.io.sniff import HEAD, decimal_of_groups, decode
 
 __all__ = ["BIG", "BigText", "big_text"]
 
@@ -102,6 +102,8 @@ class BigText(Sequence[str]):
         """Return the decimal mark that most fractions of the text have (:func:`geofit.io.sniff.find_decimal`)."""
         if sep == "," or b"," not in self.data:
             return "."
+        if mark := decimal_of_groups(self.data[:HEAD].decode("utf-8", "replace")):
+            return mark
         from geofit.io.cell_loops import count_fractions
 
         commas, points = count_fractions(np.frombuffer(self.data, np.uint8))

@@ -321,8 +321,8 @@ def _read_log(
     name, code = np.array(rows.text("hole")), np.array(rows.text("code"))
     lower_only = "from" not in rows.columns
     top, base = rows.numbers("from"), rows.numbers("to")
+    name = np.array(rows.require_known("hole", name.tolist(), collars, "collar table"))
     end = np.array([collars[h].end if h in collars else np.nan for h in name])
-    rows.require_known("hole", name.tolist(), collars, "collar table")
     mouth = np.array([collars[h].xyz[2] if h in collars else np.nan for h in name])
     if _by_elevation(rows, top, base, mouth):
         if not lower_only:

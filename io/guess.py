@@ -17,6 +17,7 @@ from geofit.io.hints import nearest_name
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table, first_names, parse_numbers
+from geofit.io.units import with_unit
 
 __all__ = ["RoleGuess", "find_columns", "guess_roles", "locate", "sample_of", "taken_as", "warn_of_depths"]
 
@@ -163,14 +164,15 @@ def _fit(table: Table, role: str, j: int, rows: list[int]) -> tuple[float, Messa
     if role in WORDS:
         return merit, why
     values, bad = parse_numbers(filled, table.decimal)
-    share = 1.0 - len(bad) / len(filled)
+    share = 1.0 - sum(with_unit(filled[i], table.decimal) is None for i in bad.tolist()) / len(filled)
     if share < 0.9:
         merit *= max(share, 0.1)
         why = message(
             "io.name-without-numbers", "by its name; {share:.0%} of its cells are not numbers", share=1 - share
         )
     low, high = _LIMITS.get(role, (-np.inf, np.inf))
-    inside = np.mean((values >= low) & (values <= high)) if share > 0 else 1.0
+    known = values[np.isfinite(values)]
+    inside = np.mean((known >= low) & (known <= high)) if known.size else 1.0
     if inside < 0.5 and share > 0.5:
         merit *= 0.3
         why = message(

@@ -285,6 +285,7 @@ def campaigns(plan: ImportPlan) -> list[tuple[TablePart, TablePart | None, list[
 
 def _holes(part: TablePart, kind: str) -> set[str]:
     try:
-        return set(read_rows(part.mapping.fill(part.source), SCHEMAS[kind], Journal()).text("hole"))
+        names = read_rows(part.mapping.fill(part.source), SCHEMAS[kind], Journal()).text("hole")
+        return {name.casefold() for name in names}
     except InputError:
         return set()

@@ -22,7 +22,7 @@ from geofit.io.guess import WORDS, find_columns
 from geofit.io.journal import Journal, Severity
 from geofit.io.source import Source, as_source
 from geofit.io.tables import Table, parse_numbers
-from geofit.io.units import length_factors
+from geofit.io.units import ANGLES, DEGREES, LENGTHS, METRES, length_factors, with_unit
 
 __all__ = ["NO_DATA", "Rows", "read_rows"]
 
@@ -88,11 +88,13 @@ class Rows:
         )
         remedy = message(
             "io.give-plain-number",
-            "Give a number with the decimal mark '{mark}' and no unit.",
+            "Give a number with the decimal mark '{mark}' and without marks of thousands, in the unit of its column.",
             mark=self.table.decimal,
         )
         for i in bad.tolist():
-            if cells[i].strip():
+            if (number := self._with_unit(role, cells[i])) is not None:
+                values[i] = number
+            elif cells[i].strip():
                 self.reject(i, role, wrong, remedy)
             elif required:
                 self.reject(i, role, empty, message("io.complete-the-cell", "Complete the cell."))
@@ -103,6 +105,16 @@ class Rows:
                     i, role, unknown, message("io.complete-cell-or-remove-row", "Complete the cell or remove the row.")
                 )
         return values * self.factors[role] if role in self.factors else values
+
+    def _with_unit(self, role: str, cell: str) -> float | None:
+        """Return the number of a cell that states the unit of its column, in that unit; None if it does not."""
+        found = with_unit(cell, self.table.decimal)
+        if found is None:
+            return None
+        number, unit = found
+        if role in LENGTHS:
+            return number if METRES.get(unit) == self.factors.get(role, 1.0) else None
+        return number if unit == DEGREES and role in ANGLES else None
 
     def places(self) -> tuple[Floats, Floats]:
         """Return easting and northing (n,) in metres, projected where the source's system is not the wanted one.
@@ -144,12 +156,34 @@ class Rows:
         """List row i but use it."""
         self._list(severity, i, role, reason, remedy)
 
-    def require_known(self, role: str, names: Sequence[str], known: Iterable[str], where: str) -> None:
-        """Reject the rows whose hole, adit or horizon is not known; ``where`` states what should name it."""
+    def require_known(self, role: str, names: Sequence[str], known: Iterable[str], where: str) -> list[str]:
+        """Return the names as they are known, and reject the rows whose hole, adit or horizon is not.
+
+        A name that differs from one known name only in its case is that one, with a note; ``where`` states what
+        should name it.
+        """
         present = list(known)
         lookup, hints = set(present), dict[str, Message]()
         if lookup.issuperset(names):
-            return
+            return list(names)
+        same: dict[str, list[str]] = {}
+        for name in lookup:
+            same.setdefault(name.casefold(), []).append(name)
+        meant = {name: found[0] for name in set(names) - lookup if len(found := same.get(name.casefold(), [])) == 1}
+        if meant:
+            self.journal.add(
+                "note",
+                self.file,
+                message(
+                    "io.names-matched-by-case",
+                    "Names that differ only in case from those of the {where} are taken as these: {names}",
+                    where=where,
+                    names=", ".join(f"{name} = {meant[name]}" for name in sorted(meant)[:40]),
+                ),
+                message("io.rename-other-horizon", "Rename one where they are two."),
+                column=self.table.header[self.columns[role]],
+            )
+            names = [meant.get(name, name) for name in names]
         for i in np.flatnonzero(self.ok).tolist():
             name = names[i]
             if name in lookup:
@@ -178,6 +212,7 @@ class Rows:
                 ),
                 hints[name],
             )
+        return list(names)
 
     def close(self) -> None:
         """Count the rows: those of the file that are not used are listed."""

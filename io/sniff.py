@@ -12,9 +12,12 @@ from geofit.data.messages import message
 from geofit.io.parser_errors import parser_message
 
 __all__ = [
+    "HEAD",
+    "decimal_of_groups",
     "decode",
     "find_decimal",
     "find_separator",
+    "grouped_number",
     "is_header",
     "is_number",
     "is_units_row",
@@ -37,6 +40,14 @@ _BOMS = (
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?")
 _DECIMAL_COMMA = re.compile(r"(?<![\d.,])\d*,\d+(?:[eE][+-]?\d+)?(?![\d.,])")
 _DECIMAL_POINT = re.compile(r"(?<![\d.,])\d*\.\d+(?:[eE][+-]?\d+)?(?![\d.,])")
+#: Thousands between blanks or apostrophes, and between points or commas where a second mark tells which it is:
+#: "1,234" alone may be 1234 or 1.234.
+_BLANKS = re.compile(r"[+-]?[1-9]\d{0,2}([ \u00a0\u2009\u202f'’])\d{3}(?:\1\d{3})*([.,]\d*)?")
+_POINTED = r"[1-9]\d{0,2}(?:,\d{3})+\.\d+"
+_COMMAED = r"[1-9]\d{0,2}(?:\.\d{3})+,\d+"
+_MARKS = re.compile(rf"[+-]?(?:{_POINTED}|{_COMMAED}|[1-9]\d{{0,2}}([.,])\d{{3}}(?:\1\d{{3}})+)")
+#: Letters of a text in which they are looked for.
+HEAD = 65_536
 _UNITS = {
     "m",
     "metre",
@@ -161,6 +172,28 @@ def is_number(cell: str) -> bool:
     return _NUMBER.fullmatch(cell.strip()) is not None
 
 
+def grouped_number(cell: str, decimal: str) -> float:
+    """Return the number of a cell with marks of thousands; nan where it has none or may be read in two ways.
+
+    Examples
+    --------
+    >>> [grouped_number(cell, ".") for cell in ("1,234.5", "1.234,5", "1 234.5", "1'234", "1,234,567", "1,234")]
+    [1234.5, 1234.5, 1234.5, 1234.0, 1234567.0, nan]
+    """
+    text = cell.strip()
+    if found := _BLANKS.fullmatch(text):
+        if found.group(2) and found.group(2)[0] != decimal:
+            return float("nan")
+        return float(text.replace(found.group(1), "").replace(",", "."))
+    found = _MARKS.fullmatch(text)
+    if found is None:
+        return float("nan")
+    if mark := found.group(1):
+        return float(text.replace(mark, ""))
+    last = max(".,", key=text.rfind)
+    return float(text.replace("," if last == "." else ".", "").replace(",", "."))
+
+
 def find_separator(lines: Sequence[str]) -> str:
     """Return the separator under which the lines have equally many cells, and most of them numbers."""
 
@@ -180,13 +213,21 @@ def find_decimal(text: str, sep: str) -> str:
     """Return the decimal mark that most fractions of the text have."""
     if sep == "," or "," not in text:
         return "."
+    if mark := decimal_of_groups(text[:HEAD]):
+        return mark
     commas, points = len(_DECIMAL_COMMA.findall(text)), len(_DECIMAL_POINT.findall(text))
     return "," if commas > points else "."
 
 
+def decimal_of_groups(text: str) -> str:
+    """Return the decimal mark of numbers such as 1,234.5 or 1.234,5, which leave no doubt; "" without any."""
+    commas, points = (len(re.findall(rf"(?<![\d.,]){form}(?![\d.,])", text)) for form in (_COMMAED, _POINTED))
+    return "," if commas > points else "." if points > commas else ""
+
+
 def is_header(first: Sequence[str], following: Sequence[Sequence[str]]) -> bool:
     """Whether the first row names the columns: words are above numbers more often than numbers do."""
-    numeric = [is_number(cell) for cell in first]
+    numeric = [is_number(cell) or grouped_number(cell, ".") == grouped_number(cell, ".") for cell in first]
     if not any(numeric):
         return True
     words = numbers = 0

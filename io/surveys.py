@@ -106,7 +106,7 @@ def read_stations(
     """
     rows = read_rows(source, SURVEY, journal)
     name, depth = rows.text("hole"), rows.numbers("depth")
-    rows.require_known("hole", name, holes, "collar table")
+    name = rows.require_known("hole", name, holes, "collar table")
     for i in np.flatnonzero((depth < 0) & rows.ok).tolist():
         rows.reject(
             i,

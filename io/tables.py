@@ -14,7 +14,16 @@ from geofit.io.big_columns import BLANK, ODD, TAKEN, BigColumn, big_columns, fin
 from geofit.io.big_text import BIG, BigText, big_text
 from geofit.io.journal import Journal
 from geofit.io.not_tables import require_table
-from geofit.io.sniff import decode, find_decimal, find_separator, is_header, is_units_row, quoted_cells, split_line
+from geofit.io.sniff import (
+    decode,
+    find_decimal,
+    find_separator,
+    grouped_number,
+    is_header,
+    is_units_row,
+    quoted_cells,
+    split_line,
+)
 from geofit.io.source import Source
 
 __all__ = ["MOST_COLUMNS", "Table", "first_names", "parse_numbers", "read_table", "require_width", "unique_names"]
@@ -330,13 +339,14 @@ def _numbered(width: int) -> tuple[str, ...]:
 def parse_numbers(cells: Sequence[str], decimal: str) -> tuple[Floats, NDArray[np.int64]]:
     """Return the numbers of a column, nan where a cell holds none, and the indices of those cells.
 
-    "nan" and "inf" are not numbers here, nor is "1_000", which Python would read.
+    "nan" and "inf" are not numbers here, nor is "1_000", which Python would read; thousands may be marked
+    (:func:`geofit.io.sniff.grouped_number`).
     """
     return cells.numbers(decimal) if isinstance(cells, BigColumn) else _parse_cells(tuple(cells), decimal)
 
 
 def _parse_cells(cells: tuple[str, ...], decimal: str) -> tuple[Floats, NDArray[np.int64]]:
-    joined = "".join(cells)
+    joined, written = "".join(cells), cells
     if decimal == "," and ("," in joined or "." in joined):
         swap = str.maketrans(",.", ".,")
         cells = tuple(cell.translate(swap) for cell in cells)
@@ -349,7 +359,8 @@ def _parse_cells(cells: tuple[str, ...], decimal: str) -> tuple[Floats, NDArray[
     if "_" in joined:
         values[["_" in cell for cell in cells]] = np.nan
     bad = np.flatnonzero(~np.isfinite(values))
-    values[bad] = np.nan
+    values[bad] = [grouped_number(written[i].replace("\u2212", "-"), decimal) for i in bad.tolist()]
+    bad = bad[np.isnan(values[bad])]
     return values, bad
 
 

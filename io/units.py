@@ -10,9 +10,20 @@ from geofit.data.messages import message
 from geofit.io.columns import plain_name
 from geofit.io.journal import Journal
 from geofit.io.source import Source
-from geofit.io.tables import Table
+from geofit.io.tables import Table, parse_numbers
 
-__all__ = ["LENGTHS", "METRES", "grid_unit", "length_factors", "list_conversion", "metres_of", "unit_marked"]
+__all__ = [
+    "ANGLES",
+    "DEGREES",
+    "LENGTHS",
+    "METRES",
+    "grid_unit",
+    "length_factors",
+    "list_conversion",
+    "metres_of",
+    "unit_marked",
+    "with_unit",
+]
 
 #: Metres of one unit. The US survey foot differs by 2 in a million: 1.4 m at a state-plane northing of 2.3e6 ft.
 METRES = {"m": 1.0, "ft": 0.3048, "ft-us": 1200.0 / 3937.0, "km": 1000.0, "cm": 0.01, "mm": 0.001}
@@ -35,6 +46,11 @@ _NAMES = {"ft": "feet", "ft-us": "US survey feet"}
 LENGTHS = frozenset(
     {"x", "y", "z", "x0", "y0", "x1", "y1", "depth", "from", "to", "chainage", "distance", "elevation", "accuracy"}
 )
+#: Roles that are angles, and what their unit is called here.
+ANGLES, DEGREES = frozenset({"azimuth", "dip", "strike"}), "deg"
+
+_WITH_UNIT = re.compile(r"(.*\d[.,]?)\s*([^\W\d_].*|°)")
+_DEGREE_WORDS = {"°", "度", "deg", "degree", "degrees"}
 
 
 def unit_marked(mark: str) -> str | None:
@@ -51,6 +67,23 @@ def unit_marked(mark: str) -> str | None:
         if found is not None:
             return found
     return None
+
+
+def with_unit(cell: str, decimal: str) -> tuple[float, str] | None:
+    """Return the number and the unit, "deg" or one of METRES, of a cell that holds both; None if it does not.
+
+    Examples
+    --------
+    >>> [with_unit(cell, ".") for cell in ("12.5 m", "1,234.5ft", "45°", "12.5", "5 T2")]
+    [(12.5, 'm'), (1234.5, 'ft'), (45.0, 'deg'), None, None]
+    """
+    found = _WITH_UNIT.fullmatch(cell.strip())
+    if found is None:
+        return None
+    mark = found.group(2).casefold().strip(" .")
+    unit = DEGREES if mark in _DEGREE_WORDS else _UNITS.get(mark)
+    values, bad = parse_numbers((found.group(1),), decimal)
+    return None if unit is None or len(bad) else (float(values[0]), unit)
 
 
 def metres_of(unit: str, file: str | None = None) -> float:

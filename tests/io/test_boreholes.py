@@ -162,3 +162,16 @@ def test_intervals_of_a_refused_collar_point_to_its_row(write):
     assert remedies["ZK10"].code == "io.referred-row-not-used"
     assert "collar.csv, row 3" in str(remedies["ZK10"])
     assert remedies["ZK11"].code == "io.did-you-mean"
+
+
+def test_holes_match_whatever_their_case(write):
+    collar = write("hole,x,y,z,depth\nBH-1,0,0,100,50\nBH-2,90,0,100,50\nbh-2,0,90,100,50\n", "collar.csv")
+    survey = write("hole,depth,azimuth,dip\nBh-1,0,90,60\n", "survey.csv")
+    log = write("hole,from,to,code\nbh-1,0,10,A\nbh-1,10,50,B\nBH-2,0,9,A\nbh-2,0,8,A\nBh-2,0,7,A\n", "log.csv")
+    holes = read_boreholes(collar, survey, [log], "down-positive")
+    assert holes.logs[0].hole.tolist() == ["BH-1", "BH-1", "BH-2", "bh-2"]
+    assert holes.paths["BH-1"].at(np.array([50.0]))[0, 0] == pytest.approx(25)
+    merged = [issue for issue in holes.issues if issue.reason.code == "io.names-matched-by-case"]
+    assert [issue.file for issue in merged] == ["survey.csv", "log.csv"]
+    # Two holes could be meant.
+    assert [issue.row for issue in holes.issues if issue.reason.code == "io.name-unknown"] == [6]

@@ -26,6 +26,24 @@ def test_many_horizons_with_stated_columns(write):
     assert picks.horizons["A"].xyz[0, 0] == 1.5
 
 
+@pytest.mark.parametrize("z", ["12.5 m", "12.5m", '"1,012.5"', "1'012.5 m"])
+def test_numbers_with_a_unit_or_thousands(write, z):
+    picks = read_points(write("x,y,z\n" + "".join(f"{i},{i * i},{z}\n" for i in range(4))))
+    expected = 1012.5 if "012" in z else 12.5
+    np.testing.assert_array_equal(picks.horizons["table"].xyz[:, 2], [expected] * 4)
+
+
+@pytest.mark.parametrize(
+    ("header", "cell", "z"), [("z", "12 ft", None), ("z [ft]", "12 m", None), ("z [ft]", "12 ft", 12)]
+)
+def test_unit_of_a_cell_is_that_of_its_column(write, header, cell, z):
+    picks = read_points(write(f"x,y,{header}\n1,2,10\n3,5,{cell}\n6,6,11\n"))
+    found = [issue for issue in picks.issues if issue.reason.code == "io.cell-not-a-number"]
+    assert [(one.row, one.value) for one in found] == ([(3, cell)] if z is None else [])
+    if z:
+        np.testing.assert_allclose(picks.horizons["table"].xyz[1, 2], z * 0.3048)
+
+
 def test_order_of_rows_is_kept_with_odd_rows_among_them(write):
     rows = [f"{i},{i * i},{i}" for i in range(40)]
     rows[7] = '7,"49",7'

@@ -118,6 +118,28 @@ def test_numbers():
     np.testing.assert_array_equal(values[[0, 2]], [1.5, 2])
 
 
+@pytest.mark.parametrize("decimal", [".", ","])
+def test_thousands_are_read_where_only_one_number_can_be_meant(decimal):
+    cells = ("1,234.5", "-1.234,5", "1 234", "1\u202f234\u202f567", "1'234", "1,234,567", "1.234.567")
+    values, bad = parse_numbers(cells, decimal)
+    assert not bad.size
+    np.testing.assert_array_equal(values, [1234.5, -1234.5, 1234, 1234567, 1234, 1234567, 1234567])
+    other = "," if decimal == "." else "."
+    doubtful = (f"1{other}234", f"1 234{other}5", "12 34", "1 2345", "1,23.5", "0,123.5", "1'234 567")
+    assert parse_numbers(doubtful, decimal)[1].tolist() == list(range(len(doubtful)))
+
+
+@pytest.mark.parametrize(("text", "decimal"), [("1,234.5;1,234", "."), ("1.234,5;1.234", ",")])
+def test_decimal_mark_is_that_of_numbers_with_both_marks(write, text, decimal):
+    table, _ = read(write(f"x;y\n{text}\n"))
+    assert table.decimal == decimal
+    assert parse_numbers(table.columns[1], decimal)[1].tolist() == [0]  # 1234, or a slip for 1.234
+
+
+def test_first_row_of_thousands_is_no_header(write):
+    assert len(read(write("1 000,5;2 000,5;7,1\n1 010,5;2 000,5;7,2\n"))[0]) == 2
+
+
 def test_stated_encoding_that_does_not_fit(write):
     with pytest.raises(InputError, match="not written in utf-8"):
         read(write("孔号\n1\n", encoding="gb18030"), encoding="utf-8")
