@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -26,8 +25,6 @@ _SAMPLE, _SHOWN = 200, 40
 #: Columns of the widest sheet that a spreadsheet program holds.
 MOST_COLUMNS = 16_384
 _SEPARATOR_NAMES = {"\t": "tab", " ": "blanks"}
-#: A number with its thousands set apart, by one mark throughout; the decimal mark is a point.
-_GROUPED = re.compile(r"[+-]?\d{1,3}(?P<mark>[ \u00a0\u2009\u202f'\u2019,])\d{3}(?:(?P=mark)\d{3})*(?:\.\d*)?")
 
 
 @dataclass(frozen=True, eq=False)
@@ -333,9 +330,7 @@ def _numbered(width: int) -> tuple[str, ...]:
 def parse_numbers(cells: Sequence[str], decimal: str) -> tuple[Floats, NDArray[np.int64]]:
     """Return the numbers of a column, nan where a cell holds none, and the indices of those cells.
 
-    "nan" and "inf" are not numbers here, nor is "1_000", which Python would read. Thousands may be set apart by blanks,
-    apostrophes, or the other decimal mark where the number cannot be read otherwise: "1 234.5", "1'234.5", "1,234.5",
-    "1,234,567", but not "1,234".
+    "nan" and "inf" are not numbers here, nor is "1_000", which Python would read.
     """
     return cells.numbers(decimal) if isinstance(cells, BigColumn) else _parse_cells(tuple(cells), decimal)
 
@@ -362,8 +357,4 @@ def _float(cell: str) -> float:
     try:
         return float(cell)
     except ValueError:
-        grouped = _GROUPED.fullmatch(cell.strip())
-        if grouped is None or (grouped["mark"] == "," and cell.count(",") == 1 and "." not in cell):
-            # "1,234" may be either 1234 or 1.234.
-            return np.nan
-        return float(cell.replace(grouped["mark"], ""))
+        return np.nan

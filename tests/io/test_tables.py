@@ -118,40 +118,6 @@ def test_numbers():
     np.testing.assert_array_equal(values[[0, 2]], [1.5, 2])
 
 
-@pytest.mark.parametrize(
-    ("cells", "decimal"),
-    [
-        (
-            ("1 234.5", "-500\u00a0100", "3\u202f100\u202f200.25", "1'234.5", "500\u2019100.5", "1,234.5", "3,100,200"),
-            ".",
-        ),
-        (
-            ("1 234,5", "-500\u00a0100", "3\u202f100\u202f200,25", "1'234,5", "500\u2019100,5", "1.234,5", "3.100.200"),
-            ",",
-        ),
-    ],
-)
-def test_thousands_set_apart(cells, decimal):
-    values, bad = parse_numbers(cells, decimal)
-    assert not len(bad)
-    np.testing.assert_array_equal(values, [1234.5, -500100, 3100200.25, 1234.5, 500100.5, 1234.5, 3100200])
-
-
-@pytest.mark.parametrize(
-    "cell", ["1,234", "12 34.5", "1234 567", "1,23,456.5", "1 234'567", "1,234.5.6", "1 234 m", ", 123"]
-)
-def test_a_number_that_may_be_another_is_none(cell):
-    values, bad = parse_numbers((cell,), ".")
-    assert bad.tolist() == [0]
-    assert np.isnan(values).all()
-
-
-def test_a_table_with_thousands_set_apart(write):
-    table, _journal = read(write("hole;x;z\nB1;500 100,5;1.234,5\nB2;500 200,5;987,25\n"))
-    x, z = (parse_numbers(column, table.decimal)[0].tolist() for column in table.columns[1:])
-    assert (x, z) == ([500100.5, 500200.5], [1234.5, 987.25])
-
-
 def test_stated_encoding_that_does_not_fit(write):
     with pytest.raises(InputError, match="not written in utf-8"):
         read(write("孔号\n1\n", encoding="gb18030"), encoding="utf-8")
