@@ -7,6 +7,7 @@ there; let the core pass through its points; approximate the periphery with what
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,6 +62,50 @@ RESOLVED_DRAWN, DRAWN = 0.2, 0.9
 LITTLE = 0.05
 
 
+@dataclass(frozen=True, eq=False)
+class _Core:
+    """What passes through points: those marked ``inside``, in a rectangle in units, with the field chosen for all.
+
+    ``coarse`` is the space on which the field was chosen; ``lines`` are the sections.
+    """
+
+    data: Data
+    rectangle: Rectangle
+    inside: NDArray[np.bool_]
+    field: FieldChoice
+    coarse: TensorSpace
+    lines: Lines
+    parametric: bool
+    settings: FitSettings
+
+
+@dataclass(frozen=True)
+class _Limits:
+    """How many control points there may be, and how short the spans are.
+
+    Between neighbours along the sections the spans are ``closer`` times as long as usual, outside the core no longer
+    than ``longest``, in units.
+    """
+
+    most: int
+    longest: float
+    closer: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class _Through:
+    """A surface through a core: the field's space, its own, coefficients, the plane under them.
+
+    ``rule`` are the section lines of a core that is linear across them.
+    """
+
+    base: TensorSpace
+    space: TensorSpace
+    coefficients: Floats
+    plane: Floats
+    rule: Floats | None
+
+
 def fit_with_core(
     points: PointSet,
     parametrization: Parametrization,
@@ -111,47 +156,36 @@ def fit_with_core(
                 "across='linear' needs at least two straight, named sections; the core is cubic across",
             ).with_severity("warning"),
         )
-    closer, longest = 1.0, min(LONGEST, max(longest_span(coarse), LONGEST_IN_GROUPS))
+    limits = _Limits(most, min(LONGEST, max(longest_span(coarse), LONGEST_IN_GROUPS)))
     while True:
+        given = _Core(data, core, inside, field, coarse, lines, parametrization.parametric, settings)
         try:
-            base, space, coefficients, plane, rule = _through_points(
-                data,
-                core,
-                inside,
-                field,
-                coarse,
-                longest,
-                lines,
-                linear,
-                parametrization.parametric,
-                most,
-                closer,
-                settings,
-            )
+            through = _through_points(given, limits, linear)
             break
         except ExactnessError:
-            torn = _torn(data, inside, coarse, field)
+            torn = _torn(given)
             if torn.any():
                 notes = (*notes, *(_torn_note(points.describe(int(k))) for k in np.flatnonzero(kept)[torn]))
                 inside = inside & ~torn
                 continue
             # Exactness outranks economy; a cap that a person gave is kept.
-            if settings.max_control_points is not None or most > LAST_CAP * len(data.plane):
+            if settings.max_control_points is not None or limits.most > LAST_CAP * len(data.plane):
                 raise
-            if longest < LONGEST:
+            if limits.longest < LONGEST:
                 # Under the cap, the points of the core come before short spans outside it.
-                longest = LONGEST
+                limits = replace(limits, longest=LONGEST)
                 continue
-            most, closer = int(1.5 * most), 0.75 * closer
+            limits = replace(limits, most=int(1.5 * limits.most), closer=0.75 * limits.closer)
+    base, space, rule = through.base, through.space, through.rule
     if linear and rule is None:
         notes = (
+            *notes,
             message(
                 "fitting.ruled-core-not-exact",
                 "a core linear across its sections cannot meet all of its points; it is cubic across",
             ).with_severity("warning"),
         )
-    first = cap_for(settings, len(data.plane), A_POINT)
-    if most > first:
+    if limits.most > most:
         words = message(
             "fitting.core-too-many-control-points",
             "meeting every point of the core takes {count} control points, more than {a_point} a data point",
@@ -163,10 +197,10 @@ def fit_with_core(
     outer = ~inside
     frozen = fixed_by_core(space, core).ravel()
     if not outer.any():
-        total = coefficients + data.over_trend(space)
+        total = through.coefficients + data.over_trend(space)
         return Net(space, base, total, frozen, None, rule, data.unit, field, 0, settings.interior_tolerance, notes)
-    periphery = Periphery(data, outer, core, field, settings, most, refit=settings.seam == "position")
-    found = periphery.fit(space, Smoothed(coefficients, plane))
+    periphery = Periphery(data, outer, core, field, settings, limits.most, refit=settings.seam == "position")
+    found = periphery.fit(space, Smoothed(through.coefficients, through.plane))
     total = found.coefficients + data.over_trend(found.space)
     return Net(
         found.space, base, total, found.frozen, core, rule, data.unit, field, found.rounds, found.limit,
@@ -174,74 +208,47 @@ def fit_with_core(
     )  # fmt: skip
 
 
-def _through_points(
-    data: Data,
-    core: Rectangle,
-    inside: NDArray[np.bool_],
-    field: FieldChoice,
-    coarse: TensorSpace,
-    longest: float,
-    lines: Lines,
-    linear: bool,
-    parametric: bool,
-    most: int,
-    closer: float,
-    settings: FitSettings,
-) -> tuple[TensorSpace, TensorSpace, Floats, Floats, Floats | None]:
-    """Lay knots within a cap, fit the field on them, and let it pass through the core's points.
-
-    Between neighbours along the sections the spans are ``closer`` times as long as usual, outside the core no longer
-    than ``longest``, in units. ``coarse`` is the space on which the field was chosen.
-
-    Returns the field's space, the surface's, its coefficients, the plane under them, and the section lines of a core
-    that is linear across them.
+def _through_points(core: _Core, limits: _Limits, linear: bool) -> _Through:
+    """Lay knots within the limits, fit the field on them, and let it pass through the core's points.
 
     Raises
     ------
     ExactnessError
         If so many control points cannot pass through the points.
     """
+    data, lines = core.data, core.lines
     degree = degree_for(len(data.plane))
     # Ties are broken by place, not by the order of the points.
-    chosen = np.flatnonzero(inside)
+    chosen = np.flatnonzero(core.inside)
     chosen = chosen[np.lexsort(data.plane[chosen].T)]
     plane = data.plane[chosen]
     pairs = neighbour_pairs(plane)
-    breaks, counted = _breaks(plane, pairs, data.area, degree, core, longest, lines, most, closer)
-    if longest_span(coarse) > SIMPLE or field.alpha > degree:
-        base = coarse
+    breaks, counted = _breaks(plane, pairs, core, limits)
+    if longest_span(core.coarse) > SIMPLE or core.field.alpha > degree:
+        base = core.coarse
     else:
-        some = [bspline.clamped_knots(some_breaks(along, min(FIELD_SPAN, longest)), degree) for along in breaks]
+        some = [bspline.clamped_knots(some_breaks(along, min(FIELD_SPAN, limits.longest)), degree) for along in breaks]
         base = TensorSpace(some[0], some[1], degree)
-    regional = smoothed(data, base, field)
+    regional = smoothed(data, base, core.field)
     misfit = data.value[chosen] - base.matrix(plane) @ regional.coefficients
-    breaks = refine_knots(*breaks, plane, pairs, misfit, degree, counted, max(settings.max_iterations, 1))
+    breaks = refine_knots(*breaks, plane, pairs, misfit, degree, counted, max(core.settings.max_iterations, 1))
     knots = [bspline.clamped_knots(along, degree) for along in breaks]
     fine, start = carried(base, regional.coefficients, knots[0], knots[1])
     if linear:
-        within = lines.u[(lines.u > core[0]) & (lines.u < core[1])]
-        rule = _thinned(within, (core[0], core[1]), NARROW * (core[1] - core[0]) / len(lines.u))
+        low, high = core.rectangle[:2]
+        within = lines.u[(lines.u > low) & (lines.u < high)]
+        rule = _thinned(within, (low, high), NARROW * (high - low) / len(lines.u))
         try:
-            space, coefficients = _skinned(fine, start, core, data, inside, settings, rule)
-            return base, space, coefficients, regional.plane, rule
+            return _Through(base, *_skinned(fine, start, core, rule), regional.plane, rule)
         except ExactnessError:
             pass
-    if parametric and lines.straight:
-        return base, fine, _lofted(fine, start, data, inside, lines.u), regional.plane, None
-    space, coefficients = _skinned(fine, start, core, data, inside, settings, None)
-    return base, space, coefficients, regional.plane, None
+    if core.parametric and lines.straight:
+        return _Through(base, fine, _lofted(fine, start, core), regional.plane, None)
+    return _Through(base, *_skinned(fine, start, core, None), regional.plane, None)
 
 
 def _breaks(
-    plane: Floats,
-    pairs: Ints,
-    area: Rectangle,
-    degree: int,
-    core: Rectangle,
-    longest: float,
-    lines: Lines,
-    most: int,
-    closer: float,
+    plane: Floats, pairs: Ints, given: _Core, limits: _Limits
 ) -> tuple[tuple[Floats, Floats], Callable[[tuple[int, int]], bool]]:
     """Lay breaks that follow the core's points, ``plane`` (m, 2) with the ``pairs`` of neighbours among them.
 
@@ -250,37 +257,39 @@ def _breaks(
     What makes the surface pass through a point must be narrow in both directions: across the sections breaks hug each
     of them, along them they follow the closest neighbours of any.
     """
+    core, lines, area, degree = given.rectangle, given.lines, given.data.area, degree_for(len(given.data.plane))
     within = lines.u[(lines.u > core[0]) & (lines.u < core[1])]
     narrow = NARROW * (core[1] - core[0]) / max(len(lines.u), 1)
     required_u = _thinned(within, (area[0], core[0], core[1], area[1]), narrow)
     required_v = np.array([area[2], core[2], core[3], area[3]])
     sizes_u = _beside_lines(lines) if lines.straight else pair_sizes(plane, pairs, 0, ACROSS)
-    sizes_v = pair_sizes(plane, pairs, 1, closer * (ALONG if lines.straight else ACROSS))
+    sizes_v = pair_sizes(plane, pairs, 1, limits.closer * (ALONG if lines.straight else ACROSS))
     stretch = 1.0
     while True:
         scale = np.array([1.0, 1.0, stretch])
-        breaks_u = graded_breaks(required_u, longest * stretch, sizes_u * scale)
-        breaks_v = graded_breaks(required_v, longest * stretch, sizes_v * scale)
+        breaks_u = graded_breaks(required_u, limits.longest * stretch, sizes_u * scale)
+        breaks_v = graded_breaks(required_v, limits.longest * stretch, sizes_v * scale)
         knots = [bspline.clamped_knots(along, degree) for along in (breaks_u, breaks_v)]
         space = TensorSpace(knots[0], knots[1], degree)
-        if in_patches(space.shape, core, space) <= 0.9 * most or stretch > 1e3:
+        if in_patches(space.shape, core, space) <= 0.9 * limits.most or stretch > 1e3:
             break
         stretch *= 1.1
 
     def counted(shape: tuple[int, int]) -> bool:
-        return in_patches(shape, core, space) <= most
+        return in_patches(shape, core, space) <= limits.most
 
     return (breaks_u, breaks_v), counted
 
 
-def _torn(data: Data, inside: NDArray[np.bool_], coarse: TensorSpace, field: FieldChoice) -> NDArray[np.bool_]:
+def _torn(core: _Core) -> NDArray[np.bool_]:
     """Return (n,) the core's points to let go: of two that ask for a cliff, the one farther from the field."""
-    torn = np.zeros(len(inside), bool)
+    data, coarse = core.data, core.coarse
+    torn = np.zeros(len(core.inside), bool)
     if data.value.ndim > 1:
         return torn
-    chosen = np.flatnonzero(inside)
+    chosen = np.flatnonzero(core.inside)
     plane = data.plane[chosen]
-    misfit = data.value[chosen] - coarse.matrix(plane) @ smoothed(data, coarse, field).coefficients
+    misfit = data.value[chosen] - coarse.matrix(plane) @ smoothed(data, coarse, core.field).coefficients
     first, second = neighbour_pairs(plane).T
     apart = data.unit * np.linalg.norm(plane[first] - plane[second], axis=1)
     slope = np.abs(misfit[first] - misfit[second]) / np.maximum(apart, 1e-9)
@@ -319,10 +328,7 @@ def _thinned(values: Floats, fixed: tuple[float, ...], least: float) -> Floats:
 def _skinned(
     space: TensorSpace,
     coefficients: Floats,
-    core: Rectangle,
-    data: Data,
-    inside: NDArray[np.bool_],
-    settings: FitSettings,
+    given: _Core,
     rule: Floats | None,
 ) -> tuple[TensorSpace, Floats]:
     """Let the surface pass through the core's points (eq. 2), and open the seams as far as the joint asks.
@@ -331,8 +337,8 @@ def _skinned(
     (at ``rule``), which has no curvature across, needs a double knot to join by its tangent plane; a full knot
     allows a break.
     """
-    p = space.degree
-    broken = settings.seam == "position"
+    core, data, inside, p = given.rectangle, given.data, given.inside, space.degree
+    broken = given.settings.seam == "position"
     at_u = dict.fromkeys(_inner(core[:2], space.knots_u), p if broken else 1 if rule is None else p - 1)
     at_v = dict.fromkeys(_inner(core[2:], space.knots_v), p if broken else 1)
     if rule is not None:
@@ -359,12 +365,13 @@ def _skinned(
     return space, result
 
 
-def _lofted(space: TensorSpace, coefficients: Floats, data: Data, inside: NDArray[np.bool_], lines: Floats) -> Floats:
+def _lofted(space: TensorSpace, coefficients: Floats, core: _Core) -> Floats:
     """Lay a parametric surface through its section curves, each curve through its points.
 
     The hinges of a fold are sharper than the spacing of its sections: the regional field would round them off
     between the sections, where the curves on both sides carry them on.
     """
+    data, inside, lines = core.data, core.inside, core.lines.u
     through = bspline.collocation(space.knots_u, space.degree, lines)
     net = coefficients.reshape(*space.shape, -1)
     start = np.einsum("ki,ijc->kjc", through, net).reshape(len(lines) * space.shape[1], *coefficients.shape[1:])

@@ -101,7 +101,7 @@ class FieldChoice:
         return self.rho
 
     def at_most(self, alpha: int) -> FieldChoice:
-        """Return the field, or one of the same variance and correlation length that is no smoother than ``alpha``."""
+        """Return the field, or one of the same variance and correlation length, at most as smooth as ``alpha``."""
         if self.alpha <= alpha:
             return self
         kappa, rho = as_smooth(self.kappa, self.rho, self.alpha, alpha)

@@ -23,7 +23,7 @@ from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 
 from geofit.splines import bspline
 from geofit.splines.matern import MaternPrecision
-from geofit.splines.tensor import TensorSpace, band_sum
+from geofit.splines.tensor import TensorSpace
 
 __all__ = ["Likelihood", "Optimum", "Slope", "plane_coefficients"]
 
@@ -165,9 +165,9 @@ class Likelihood:
         rho = math.exp(key[1])
         try:
             energy, bent, determinant = self._prior(key[0], (key[2], key[3]))
-            lower = cholesky_banded(
-                band_sum(rho * energy, self.band), lower=True, overwrite_ab=True, check_finite=False
-            )
+            system = rho * energy
+            system[: len(self.band)] += self.band
+            lower = cholesky_banded(system, lower=True, overwrite_ab=True, check_finite=False)
         except LinAlgError:
             return UNSOLVABLE, math.nan, 0.0
         held = rho * bent

@@ -22,9 +22,9 @@ __all__ = ["EVEN", "choose_field", "even_space", "longest_span"]
 Rectangle = tuple[float, float, float, float]
 
 #: Shortest spans of the first space on which the field is chosen, in units of the spacing, and of the last: holes in
-#: groups resolve what points of an even spacing do not. Control points of the level that the search begins on, of the
-#: first that is kept, and at most.
-EVEN, CLOSE, SKETCH, FIRST_LEVEL, LAST_LEVEL = 0.5, 0.25, 500, 1_500, 25_000
+#: groups resolve what points of an even spacing do not, less so where the field is smoother than the splines. Control
+#: points of the level that the search begins on, of the first that is kept, and at most.
+EVEN, CLOSE, LESS_EVEN, SKETCH, FIRST_LEVEL, LAST_LEVEL = 0.5, 0.25, 0.35, 500, 1_500, 25_000
 #: Points that the search begins with, at least; of twice as many every other one serves.
 SKETCHED = 10_000
 #: Another level must raise the restricted likelihood by this much, -2 log of it.
@@ -81,9 +81,10 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldCho
     def resolved(first: Level) -> Level:
         best = _lengthened(first, _coarser(data.area, degree, first.space.size), on)
         if best is first:
-            # Groups of points need no shorter spans for a field smoother than the splines, unless longer ones cut it.
-            settled = first.field.alpha > degree and known and known[0].noise < LOUDER * first.field.noise
-            best = _shortened(first, _finer(data.area, degree, limit, EVEN if settled else CLOSE), on)
+            # A field smoother than the splines needs shorter spans only where those of the sketch still cut it.
+            settled = known and known[0].noise < LOUDER * first.field.noise
+            closest = CLOSE if first.field.alpha <= degree else EVEN if settled else LESS_EVEN
+            best = _shortened(first, _finer(data.area, degree, limit, closest), on)
             if best is not first:
                 best = _lengthened(best, _coarser(data.area, degree, best.space.size), on)
         return best

@@ -125,21 +125,19 @@ class MaternPrecision:
 
         It is wider than the space's own where the exponent is beyond the degree.
         """
-        blocks = form = self._form(kappa, stretch)
-        for _ in range(self.power - 1):
-            blocks = _product(form, self._masses, blocks)
-        return self._banded(blocks)
+        form = self._form(kappa, stretch)
+        return self._banded(form[self.space.degree :] if self.power == 1 else _squared(form, self._masses))
 
     def _banded(self, blocks: Floats) -> Floats:
-        """Return the band of couplings, (2 r + 1, nu, 2 r + 1, nv)."""
-        reach, (nu, nv) = len(blocks) // 2, self.space.shape
+        """Return the band of couplings with the control points not before, (r + 1, nu, 2 r + 1, nv)."""
+        reach, (nu, nv) = len(blocks) - 1, self.space.shape
         # Column by column, as LAPACK takes it.
         width = min(reach * nv + reach, self.space.size - 1) + 1
         band = np.zeros((nu, nv, width))
         for a in range(reach + 1):
             for b in range(-reach, reach + 1):
                 if 0 <= a * nv + b < width:
-                    band[:, :, a * nv + b] += blocks[reach + a, :, b + reach]
+                    band[:, :, a * nv + b] += blocks[a, :, b + reach]
         return band.reshape(self.space.size, width).T
 
     def logdet(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> float:
@@ -150,7 +148,7 @@ class MaternPrecision:
         scipy.linalg.LinAlgError
             If F is not positive definite to working precision.
         """
-        form = self._banded(self._form(kappa, stretch))
+        form = self._banded(self._form(kappa, stretch)[self.space.degree :])
         lower = cholesky_banded(form, lower=True, overwrite_ab=True, check_finite=False)
         return float(self.power * 2 * np.log(lower[0]).sum() - (self.power - 1) * np.log(self._masses).sum())
 
@@ -163,15 +161,20 @@ class MaternPrecision:
         return np.asarray(flat.reshape(-1, 3))
 
 
-def _product(form: Floats, mass: Floats, other: Floats) -> Floats:
-    """Return F D^-1 G of couplings F, (2 p + 1, nu, 2 p + 1, nv), masses D, (nu, nv), and wider couplings G."""
-    p, q, (nu, nv) = len(form) // 2, len(other) // 2, mass.shape
-    over = np.pad(form / mass[:, None], ((0, 0), (q, q), (0, 0), (q, q)))
-    result = np.zeros((2 * (p + q) + 1, nu, 2 * (p + q) + 1, nv))
-    for a in range(2 * q + 1):
-        for b in range(2 * q + 1):
-            met = over[:, a : a + nu, :, b : b + nv]
-            result[a : a + 2 * p + 1, :, b : b + 2 * p + 1] += met * other[a, :, b][:, None]
+def _squared(form: Floats, mass: Floats) -> Floats:
+    """Return F D^-1 F of couplings F, (2 p + 1, nu, 2 p + 1, nv), and masses D, (nu, nv).
+
+    Its couplings with the control points not before, (2 p + 1, nu, 4 p + 1, nv).
+    """
+    p, (nu, nv) = len(form) // 2, mass.shape
+    over = np.pad(form / mass[:, None], ((0, 0), (p, p), (0, 0), (p, p)))
+    result = np.zeros((2 * p + 1, nu, 4 * p + 1, nv))
+    for a in range(2 * p + 1):
+        # From i to i + a - p, and on to i + a - p + k - p, which is not before i.
+        first = 2 * p - a
+        for b in range(2 * p + 1):
+            met = over[first:, a : a + nu, :, b : b + nv]
+            result[: a + 1, :, b : b + 2 * p + 1] += met * form[a, :, b][:, None]
     return result
 
 
