@@ -133,11 +133,11 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
     dip = _dip(points, plane)
     over_map = backtracking(points, map_frame(points))
     if dip < STEEP and over_map <= OVERTURNED:
-        return "map", message("fitting.frame-map", "height field over the map (mean dip {dip:.0f} degrees)", dip=dip)
+        return "map", message("fitting.frame-map", "height field over the map (mean dip {dip:.0f}°)", dip=dip)
     extent = np.ptp(plane.to_local(points.xyz), axis=0)
     thin = extent[2] <= PLANAR * min(extent[0], extent[1])
     over_plane = backtracking(points, plane)
-    steep = message("fitting.frame-best-plane", "height field over its best plane: it dips {dip:.0f} degrees", dip=dip)
+    steep = message("fitting.frame-best-plane", "height field over its best plane: it dips {dip:.0f}°", dip=dip)
     if dip >= STEEP and thin and over_plane <= OVERTURNED:
         return "best-plane", steep
     if over_map > OVERTURNED and len(np.unique(points.section[points.section != ""])) >= 2:
@@ -153,7 +153,7 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
     if over_map <= OVERTURNED:
         return "map", message(
             "fitting.frame-map-despite-dip",
-            "height field over the map: as a whole the points dip {dip:.0f} degrees, but they scatter across that "
+            "height field over the map: as a whole the points dip {dip:.0f}°, but they scatter across that "
             "plane by {thickness:.0f} m over {length:.0f} x {width:.0f} m",
             dip=dip,
             thickness=float(extent[2]),
