@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -11,6 +11,9 @@ from geofit.cli.app import app
 from geofit.cli.console import print_counts, print_issues, print_json, print_table, with_exit_code
 from geofit.cli.options import Json
 from geofit.cli.sources import read_source
+
+if TYPE_CHECKING:
+    from geofit.project.describe import Value
 
 __all__ = ["info"]
 
@@ -47,9 +50,24 @@ def info(
     if as_json:
         print_json([dict(zip(header, row, strict=True)) for row in rows])
     else:
-        print_table(header, rows, left=(0, 1, 4) if header[0] == "table" else (0, 2))
+        print_table(
+            header,
+            [[_text(value) for value in row] for row in rows],
+            left=(0, 1, 4) if header[0] == "table" else (0, 2),
+        )
         print_issues(issues)
     return 0
+
+
+def _text(value: Value) -> str:
+    match value:
+        case None:
+            return "–"
+        case low, high:
+            return f"{low:.1f} .. {high:.1f}"
+        case float():
+            return f"{value:.2f}"
+    return str(value)
 
 
 def _may_be_tables(file: Path) -> bool:

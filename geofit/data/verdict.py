@@ -176,9 +176,10 @@ def _error(rms: float, scheme: Scheme, epsilon: float) -> tuple[Level, Message]:
     level: Level = "pass" if ratio <= 1 else "warning" if ratio < FAR else "fail"
     text = message(
         "data.verdict-left-out-error",
-        "left-out error {error:length} m = {ratio:.1f} ε ({scheme})",
+        "left-out error {error:length} m = {ratio:g} ε ({scheme})",
         error=rms,
-        ratio=ratio,
+        # Three digits are known at most.
+        ratio=round(ratio, 1) if ratio < 100 else float(f"{ratio:.2e}"),
         scheme=_SCHEMES[scheme],
     )
     return level, text

@@ -100,7 +100,7 @@ def split_auto(plane: Floats, area: Rectangle, drawn: NDArray[np.bool_] | None =
         message(
             "fitting.dense-points-fill-core",
             "{count} points with a spacing below {limit:.0f} m fill {width:.0f} m × {length:.0f} m, {contrast:.1f} "
-            "times as dense as the other {others} points",
+            "times as dense as the rest ({others})",
             count=int(inside.sum()),
             limit=limit,
             width=float(core[1] - core[0]),

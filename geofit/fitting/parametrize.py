@@ -153,7 +153,7 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
     if over_map <= OVERTURNED:
         return "map", message(
             "fitting.frame-map-despite-dip",
-            "height field over the map: as a whole the points dip {dip:.0f} degrees, but they scatter across that "
+            "height field over the map: as a whole the points dip {dip:.0f}°, but they scatter across that "
             "plane by {thickness:.0f} m over {length:.0f} x {width:.0f} m",
             dip=dip,
             thickness=float(extent[2]),

@@ -112,7 +112,7 @@ def _check(deviations: tuple[DipDeviation, ...], orientations: Orientations) -> 
     if not beyond:
         text = message(
             "site.dips-agree-surface",
-            "the measured dips ({n}) agree with the surface, the worst by {angle:.0f} degrees",
+            "the measured dips ({n}) agree with the surface, the worst by {angle:.0f}°",
             n=len(worst),
             angle=first.angle,
         )
@@ -120,7 +120,7 @@ def _check(deviations: tuple[DipDeviation, ...], orientations: Orientations) -> 
     text = message(
         "site.dips-contradict-surface",
         "measured dips that contradict the surface: {count} of {n}, the worst is {azimuth:.0f}/{dip:.0f} where "
-        "the surface dips {surface_azimuth:.0f}/{surface_dip:.0f} ({angle:.0f} degrees between the planes); the "
+        "the surface dips {surface_azimuth:.0f}/{surface_dip:.0f} ({angle:.0f}° between the planes); the "
         "measurement belongs to another structure, or the surface is wrong there",
         count=len(beyond),
         n=len(worst),

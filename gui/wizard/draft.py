@@ -9,13 +9,16 @@ from pathlib import Path
 import numpy as np
 
 from geofit.data.errors import GeofitError
+from geofit.data.messages import EMPTY, Message
 from geofit.data.progress import Progress, tell
 from geofit.io.columns import HORIZON_COLUMNS, SCHEMAS
-from geofit.io.guess import WORDS
+from geofit.io.guess import WORDS, RoleGuess, warn_of_depths
+from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping
 from geofit.io.preview import TablePreview, preview_file, preview_table
 from geofit.io.source import Source
 from geofit.io.tables import parse_numbers
+from geofit.io.units import with_unit
 
 __all__ = ["Draft", "drafts_of", "free_name", "preview_again"]
 
@@ -123,6 +126,19 @@ class Draft:
         x, y = self.roles["x"], self.roles["y"]
         return replace(self, roles={**self.roles, "x": y, "y": x}, changed=True)
 
+    def doubts(self) -> tuple[Message, ...]:
+        """Return what the library warns of where an elevation is called a depth, or depths are left unread."""
+        if self.kind != "picks" or "z" not in self.roles or self.source.measure is not None:
+            return ()
+        header, journal = self.preview.header, Journal()
+        guessed = {(one.role, one.index): one for one in self.preview.roles}
+        roles = {
+            role: guessed.get((role, at)) or RoleGuess(role, at, header[at], 1.0, EMPTY, "stated")
+            for role, at in self.roles.items()
+        }
+        warn_of_depths(self.source.name, header, roles, journal)
+        return tuple(issue.reason for issue in journal.issues)
+
     def bad_cells(self) -> frozenset[tuple[int, int]]:
         """Return (row, column) of the shown cells that should hold a number and do not."""
         bad = set()
@@ -131,7 +147,12 @@ class Draft:
                 continue
             cells = tuple(row[column] for row in self.preview.rows)
             _, wrong = parse_numbers(tuple(cell.strip() for cell in cells), self.preview.decimal)
-            bad |= {(int(row), column) for row in wrong if cells[int(row)].strip() or self._required(role)}
+            bad |= {
+                (int(row), column)
+                for row in wrong
+                if (cells[int(row)].strip() or self._required(role))
+                and with_unit(cells[int(row)], self.preview.decimal) is None
+            }
         for column in self.horizons:
             cells = tuple(row[column].strip() for row in self.preview.rows)
             bad |= {(int(row), column) for row in parse_numbers(cells, self.preview.decimal)[1] if cells[int(row)]}

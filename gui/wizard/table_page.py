@@ -24,7 +24,7 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.gui.theme import is_dark
-from geofit.gui.translate import failure
+from geofit.gui.translate import failure, translated
 from geofit.gui.wizard.draft import Draft
 from geofit.gui.wizard.words import kind_name, role_name
 from geofit.io.columns import plain_name
@@ -231,6 +231,7 @@ class TablePage(QWidget):
             notes.append(
                 self.tr("Red cells are not numbers ({count} shown): such rows are listed, not used.").format(count=bad)
             )
+        notes += [f"{translated(doubt)}." for doubt in draft.doubts()]
         if draft.exchanged:
             notes.append(
                 self.tr(

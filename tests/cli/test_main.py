@@ -159,9 +159,12 @@ def test_info_tells_points_and_step_apart(fitted, monkeypatch, capsys):
     code, out, _ = run(monkeypatch, capsys, "info", fitted / "picks.csv", "--json")
     assert code == 0
     assert [row["horizon"] for row in json.loads(out)] == ["T3/T2"]
+    (row,) = json.loads(out)
+    assert isinstance(row["points"], int)
+    assert all(low < high for low, high in (row["west..east, m"], row["south..north, m"], row["z, m"]))
     code, out, _ = run(monkeypatch, capsys, "info", fitted / "out" / "T3_T2.step", "--json")
     known = json.loads((fitted / "out" / "T3_T2.json").read_text(encoding="utf-8"))
-    assert [int(row["patches"]) for row in json.loads(out)] == [len(known["patches"])]
+    assert [row["patches"] for row in json.loads(out)] == [len(known["patches"])]
 
 
 def test_strict_brings_points_within_the_tolerance_that_noise_explains(tmp_path, monkeypatch, capsys):
@@ -362,6 +365,7 @@ def test_info_says_what_tables_other_than_points_hold(tmp_path, monkeypatch, cap
     (tmp_path / "s.csv").write_text("hole,depth,azimuth,dip\nB1,0,90,60\n")
     code, out, _ = run(monkeypatch, capsys, "info", tmp_path / "s.csv", "--json")
     assert (code, json.loads(out)[0]["kind"]) == (0, "survey")
+    assert json.loads(out)[0]["rows"] == 1
     code, out, _ = run(monkeypatch, capsys, "info", tmp_path / "c.csv")
     assert code == 0
     assert "collar" in out

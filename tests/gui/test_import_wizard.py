@@ -239,6 +239,18 @@ def test_several_columns_are_horizons(qtbot, tmp_path):
     assert roles_shown(again)[3:] == ["z", "horizon elevation", ""]
 
 
+def test_depths_named_as_elevations_are_told(qtbot, tmp_path):
+    (tmp_path / "points.csv").write_text("x,y,z,depth\n1,2,3,30\n4,5,6,60\n8,7,9,90\n")
+    wizard = opened(qtbot, tmp_path, tmp_path / "points.csv")
+    choose(wizard.page.kind, "picks")
+    rested(qtbot, wizard)
+    assert "Column 'depth' is not used" in wizard.page.message.text()
+    name_column(wizard, 3, "z")
+    assert "is called a depth and is taken as an elevation" in wizard.page.message.text()
+    name_column(wizard, 2, "z")
+    assert "Column 'depth' is not used" in wizard.page.message.text()
+
+
 def test_a_role_given_to_another_column_leaves_the_first(qtbot, tmp_path):
     (tmp_path / "points.csv").write_text("x,y,z,w\n1,2,3,30\n4,5,6,60\n8,7,9,90\n")
     wizard = opened(qtbot, tmp_path, tmp_path / "points.csv")

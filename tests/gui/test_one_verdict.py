@@ -83,9 +83,9 @@ def test_what_is_known_away_from_the_data_reaches_badge_and_tree(shown):
     worst = replace(found.left_out[0], rms=10 * 0.5)
     document.put_prediction(document.state.provenances[NAME], replace(found, left_out=(worst, *found.left_out[1:])))
     shown.idle()
-    assert "10.0 ε" in str(shown.panels.verdict.text)
+    assert "10 ε" in str(shown.panels.verdict.text)
     assert shown.panels.verdict.lamps[2][0].name == "failed"
-    assert "10.0 ε" in tree_row(shown).words
+    assert "10 ε" in tree_row(shown).words
 
 
 def test_another_control_error_is_another_verdict_without_a_fit(shown):
