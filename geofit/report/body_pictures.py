@@ -27,6 +27,8 @@ Floats = NDArray[np.float64]
 
 #: Nodes along the longer side of a section, colour of a body, samples within this share of its size are shown.
 NODES, COLOUR, THICKNESS = 90, "#b4582a", 0.05
+#: Room for the label of an easting or northing below a section, inches.
+LABEL = 0.55
 #: Elevations of a section are raised by one of these, until it is this share as tall as wide.
 RAISED, FLATTEST = (1, 2, 5, 10), 0.25
 SHADES = ("#f6e3d8", "#e9bd9f", "#d58f62")
@@ -71,12 +73,17 @@ def _sections(body: BodyFit, t: Language) -> bytes:
         t("Plan at elevation {value} m", value=f"{middle[2]:.0f}"),
     )
     boxes = {2: (0.115, 0.13, 0.38, 0.79), 1: (0.615, 0.62, 0.375, 0.3), 0: (0.615, 0.13, 0.375, 0.3)}
+    from matplotlib.ticker import MaxNLocator
+
     with drawing(TYPE):
         figure = Figure(figsize=(WIDTH, 3.9), dpi=DOTS)
         for across, along, up in ((2, 0, 1), (1, 0, 2), (0, 1, 2)):
             axes = figure.add_axes(boxes[across], anchor="NW")
             _section(axes, body, (across, along, up), low, high, middle)
             axes.set_aspect(raised if up == 2 else 1, adjustable="box")
+            axes.apply_aspect()
+            most = int(np.clip(axes.get_position().width * WIDTH / LABEL, 1, 3))
+            axes.xaxis.set_major_locator(MaxNLocator(most, steps=[1, 2, 5, 10], min_n_ticks=1))
             axes.set_title(titles[across], size=8)
             axes.set_xlabel(names[along])
             axes.set_ylabel(names[up])
@@ -110,8 +117,7 @@ def _section(axes: Axes, body: BodyFit, ways: tuple[int, int, int], low: Floats,
         axes.plot(xyz[near, along], xyz[near, up], "o", ms=1.8, mfc=face, mec=TEXT, mew=0.3, zorder=3)
     axes.set_xlim(s[0], s[-1])
     axes.set_ylim(z[0], z[-1])
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MaxNLocator(3, steps=[1, 2, 5, 10]))
+    axes.yaxis.set_major_locator(MaxNLocator(3, steps=[1, 2, 5, 10]))
     axes.ticklabel_format(useOffset=False, style="plain")
     axes.grid(color=LINE, lw=0.4, zorder=0)
     axes.set_axisbelow(True)

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from fpdf import FPDF
+from fpdf.fonts import TTFFont
 from fpdf.outline import OutlineSection
 
 from geofit.data.files import replacing
@@ -38,6 +39,9 @@ BODY, QUIET, SMALL, TINY = 8.6, 7.6, 7.0, 6.4
 LEADING = 1.45
 #: No picture is higher than this, mm: two fit on a page. One to scale may be higher.
 HIGHEST = 104.0
+#: A last page with less than this on it, mm, is saved if these shares of the usual room between rows leave it empty.
+SPARSE = 45.0
+TIGHTER = (0.8, 0.6)
 #: Heights of a line of the title block and of a signature, and the least of the picture on the cover, mm.
 FIELD, SIGNED, LOWEST_COVER = 8.6, 9.0, 40.0
 #: Dots an inch of pictures to scale.
@@ -65,25 +69,39 @@ def write_pdf(document: ReportDocument, images: Mapping[str, bytes], path: Path)
     MissingDependencyError
         If the document is in Chinese and the machine has no font for it.
     """
-    pdf = _Pages(document)
-    for i, chapter in enumerate(document.chapters):
-        pdf.chapter(chapter, images, cover=i == 0)
-        if i == 0 and document.contents:
-            pdf.contents(document.chapters[1].title)
+    pdf = _laid(document, images, 1.0)
+    if len(pdf.pages) > 1 and pdf.y - TOP < SPARSE:
+        for share in TIGHTER:
+            other = _laid(document, images, share)
+            if len(other.pages) < len(pdf.pages):
+                pdf.drop()
+                pdf = other
+                break
+            other.drop()
     pdf.number()
     with replacing(path) as part:
         part.write_bytes(bytes(pdf.output()))
 
 
-class _Pages(FPDF):
-    """A4 pages with a running head and numbers."""
+def _laid(document: ReportDocument, images: Mapping[str, bytes], share: float) -> _Pages:
+    """Return the pages of a document with a share of the usual room between the rows of tables."""
+    pdf = _Pages(document, share)
+    for i, chapter in enumerate(document.chapters):
+        pdf.chapter(chapter, images, cover=i == 0)
+        if i == 0 and document.contents:
+            pdf.contents(document.chapters[1].title)
+    return pdf
 
-    def __init__(self, document: ReportDocument) -> None:
+
+class _Pages(FPDF):
+    """A4 pages with a running head and numbers, with a ``share`` of the usual room between the rows of tables."""
+
+    def __init__(self, document: ReportDocument, share: float) -> None:
         super().__init__(format="A4")
         # Each font that is asked for a character it lacks would report it, though the next one has it.
         logging.getLogger("fpdf").setLevel(logging.ERROR)
         logging.getLogger("fontTools").setLevel(logging.ERROR)
-        self.document, self.running, self.highest = document, "", HIGHEST
+        self.document, self.running, self.share, self.highest = document, "", share, HIGHEST
         fonts = pdf_fonts(chinese=document.language.startswith("zh"))
         for family, style, font in (
             ("text", "", fonts.regular),
@@ -130,6 +148,12 @@ class _Pages(FPDF):
         self._rule(self.h - 14.5)
         self.type.draw(SIDE, self.h - 11, self.document.footer, Pen(SMALL, MUTED))
 
+    def drop(self) -> None:
+        """Close the files of the fonts, as writing the pages would."""
+        for font in self.fonts.values():
+            if isinstance(font, TTFFont):
+                font.close()
+
     def number(self) -> None:
         """Write page of pages at the foot of each page, when their number is known."""
         last = len(self.pages)
@@ -166,7 +190,7 @@ class _Pages(FPDF):
             if isinstance(block, Fields):
                 height += FIELD * ((len(block.items) + 1) // 2) + 2.5
             elif isinstance(block, ReportTable):
-                height += table_height(block, self.epw, self.type) + 2.5
+                height += table_height(block, self.epw, self.type, self.share) + 2.5
             elif isinstance(block, Signatures):
                 height += 5 + SIGNED * len(block.roles)
             elif not isinstance(block, Picture):
@@ -223,7 +247,7 @@ class _Pages(FPDF):
         elif isinstance(block, Paragraph):
             self._paragraph(block)
         elif isinstance(block, ReportTable):
-            draw_table(self, self.type, block, lambda: self.foot, self.add_page, self.empty_page)
+            draw_table(self, self.type, block, lambda: self.foot, self.add_page, self.empty_page, self.share)
             self.set_y(self.y + 2.5)
         elif isinstance(block, Facts):
             self._facts(block)
@@ -354,7 +378,7 @@ class _Pages(FPDF):
                     tall = _size(images[block.name], self.epw, self.highest, to_scale=block.to_scale)[1]
                 return height + tall + 10
             elif isinstance(block, ReportTable):
-                whole = table_height(block, self.epw, self.type)
+                whole = table_height(block, self.epw, self.type, self.share)
                 return height + (whole if whole <= WHOLE * self.empty_page else 38.0)
             elif isinstance(block, Signatures):
                 return height + 5 + SIGNED * len(block.roles)

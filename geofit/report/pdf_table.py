@@ -35,9 +35,12 @@ def plain_text(cell: Cell) -> str:
 
 
 class LaidTable:
-    """A table whose cells are broken into lines: widths of the columns, lines and height of each row."""
+    """A table whose cells are broken into lines: widths of the columns, lines and height of each row.
 
-    def __init__(self, table: ReportTable, room: float, type_: Typesetter) -> None:
+    ``share`` of the usual room is above and below the text of a cell.
+    """
+
+    def __init__(self, table: ReportTable, room: float, type_: Typesetter, share: float = 1.0) -> None:
         self.table = table
         self.widths = _widths(table, room, type_)
         inner = [width - 2 * PADDING[0] for width in self.widths]
@@ -51,20 +54,21 @@ class LaidTable:
             ]
             for cells in table.rows
         ]
-        self.padding = DENSE if table.dense else PADDING[1]
+        self.padding = DENSE if table.dense else share * PADDING[1]
         self.head_height = _height(self.head, self.padding)
         self.heights = [_height(row, self.padding) for row in self.rows]
 
 
-def table_height(table: ReportTable, room: float, type_: Typesetter) -> float:
-    """Return the height of a table over a width, mm."""
-    laid = LaidTable(table, room, type_)
+def table_height(table: ReportTable, room: float, type_: Typesetter, share: float = 1.0) -> float:
+    """Return the height of a table over a width, mm; ``share`` is that of :class:`LaidTable`."""
+    laid = LaidTable(table, room, type_, share)
     return laid.head_height + sum(laid.heights)
 
 
 def draw_table(
-    pdf: FPDF, type_: Typesetter, table: ReportTable, bottom: Callable[[], float], turn: Callable[[], None], page: float
-) -> None:
+    pdf: FPDF, type_: Typesetter, table: ReportTable, bottom: Callable[[], float], turn: Callable[[], None],
+    page: float, share: float = 1.0,
+) -> None:  # fmt: skip
     """Draw a table from where the page stands.
 
     Parameters
@@ -81,8 +85,10 @@ def draw_table(
         Begins a new page.
     page : float
         Height of an empty page, mm.
+    share : float
+        That of :class:`LaidTable`.
     """
-    laid = LaidTable(table, pdf.epw, type_)
+    laid = LaidTable(table, pdf.epw, type_, share)
     first = 0
     for last in page_ends(laid, bottom() - pdf.y, page):
         if last == 0 or first > 0:

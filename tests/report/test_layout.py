@@ -15,7 +15,7 @@ from geofit.data.site import Ground, Section
 from geofit.data.title_block import Revision, TitleBlock
 from geofit.report import fonts
 from geofit.report.chapters import document
-from geofit.report.document import Column, Picture, ReportTable, Signatures
+from geofit.report.document import Chapter, Column, Heading, Picture, ReportDocument, ReportTable, Signatures
 from geofit.report.furniture import exaggeration_for, scale_for, scale_text
 from geofit.report.gather import accuracy_report
 from geofit.report.html import write_html
@@ -190,6 +190,18 @@ def test_no_table_is_torn_by_a_row_or_two(count, room):
     assert max(heights) <= 250.0
     if len(parts) > 1:
         assert parts.min() >= FEWEST
+
+
+@pytest.mark.parametrize(("rows", "pages"), [(32, 1), (34, 1), (38, 1), (60, 2)])
+def test_a_few_lines_do_not_take_a_page_of_their_own(rows, pages, tmp_path):
+    columns = (Column("a"), Column("b", "number"))
+    table = ReportTable(columns, tuple((f"r{k}", str(k)) for k in range(rows)))
+    tail = (Heading("Tail"), ReportTable(columns, (("last", "1"), ("row", "2"))))
+    chapters = (Chapter("Cover", ()), Chapter("Text", (table, *tail)))
+    write_pdf(ReportDocument("R", "S", "R", "2026-01-02", "en", "geofit", chapters), {}, tmp_path / "r.pdf")
+    texts, _ = _pages(tmp_path / "r.pdf")
+    assert len(texts) == 1 + pages
+    assert "last" in texts[-1]
 
 
 @pytest.mark.parametrize(
