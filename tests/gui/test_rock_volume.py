@@ -105,8 +105,11 @@ def test_a_slice_of_a_large_volume_follows_the_slider(qtbot, dialog, tmp_path):
     values = np.random.default_rng(3).integers(0, 255, (400, 400, 400), np.uint8)
     np.save(tmp_path / "large.npy", values)
     began = time.process_time()
+    counted = np.unique_counts(values).counts
+    whole = time.process_time() - began
+    began = time.process_time()
     read(qtbot, dialog, tmp_path / "large.npy")
-    assert time.process_time() - began < 3
+    reading = time.process_time() - began
     qtbot.wait(50)
     took = []
     for axis in range(3):
@@ -116,13 +119,17 @@ def test_a_slice_of_a_large_volume_follows_the_slider(qtbot, dialog, tmp_path):
             dialog.slices.slider.setValue(place)
             dialog.slices.picture.repaint()
             took.append(time.process_time() - began)
-    assert np.median(took) < 0.05
-    # Nothing is kept of the slices before: the last ones are as quick as the first.
-    assert np.median(took[-10:]) < 0.05
     began = time.process_time()
     dialog.high.setValue(99)
     dialog.slices.canvas.draw()
-    assert time.process_time() - began < 0.25
+    changing = time.process_time() - began
+    np.testing.assert_array_equal(dialog.volume.counts, counted)
+    # Against numpy's count of the same voxels, as processors differ.
+    assert reading < whole
+    assert np.median(took) < 0.03 * whole
+    # Nothing is kept of the slices before: the last ones are as quick as the first.
+    assert np.median(took[-10:]) < 0.03 * whole
+    assert changing < 0.15 * whole
     assert dialog.porosity.text() == f"{100 * (values <= 99).mean():.2f} %"
 
 

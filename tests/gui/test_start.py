@@ -40,20 +40,41 @@ app.start(None)
 """
 
 
+#: What any window with a view of VTK takes: the libraries, the widget, one picture.
+PEER = """
+import os, time
+from PySide6.QtWidgets import QApplication, QMainWindow
+app = QApplication([])
+import pyvista, pyvistaqt
+window = QMainWindow()
+view = pyvistaqt.QtInteractor(window, auto_update=False)
+window.setCentralWidget(view)
+window.show()
+QApplication.processEvents()
+view.render()
+print(time.process_time(), flush=True)
+os._exit(0)
+"""
+
+
+def run(code):
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=240, check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
 def test_a_splash_comes_first_and_the_window_soon():
-    """Seconds of the processor: what a start takes on an idle machine."""
-    best = None
-    for _ in range(2):
-        done = subprocess.run([sys.executable, "-c", CODE], capture_output=True, text=True, timeout=120, check=False)
-        assert done.returncode == 0, done.stderr
-        told = json.loads(done.stdout)
-        best = told if best is None or told["window"] < best["window"] else best
-    assert told["seen"]
-    assert told["heavy"] == []
-    assert told["usable"]
-    assert told["said"][1] == 1.0
-    assert best["splash"] < 1.0, best
-    assert best["window"] < 3.0, best
+    """Time of the processor against an empty window with a view of VTK, as processors differ."""
+    runs = [(run(CODE), run(PEER)) for _ in range(2)]
+    for told, _ in runs:
+        assert told["seen"]
+        assert told["heavy"] == []
+        assert told["usable"]
+        assert told["said"][1] == 1.0
+    # 0.15 and 2.2 on an idle machine.
+    peer = min(peer for _, peer in runs)
+    assert min(told["splash"] for told, _ in runs) < 0.5 * peer
+    assert min(told["window"] for told, _ in runs) < 3.5 * peer
 
 
 def test_folds_alone_load_the_signal_processing():

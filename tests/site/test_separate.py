@@ -53,7 +53,7 @@ def repaired(crossing):
 def test_the_crossing_goes_and_exact_points_stay_exact(crossing, repaired):
     before = compare_horizons(crossing["top"], crossing["base"])
     assert before.crossed_volume > 100
-    assert len(before.crossings) >= 3
+    assert len(before.crossings) >= 2
     assert repaired.contradictions == ()
     after = compare_horizons(repaired.surfaces["top"], repaired.surfaces["base"])
     assert after.crossed_volume == 0
