@@ -54,6 +54,15 @@ def own_settings(tmp_path, monkeypatch):
 
 
 @pytest.fixture(autouse=True)
+def collected_here(request):
+    """Garbage dies where windows may die, as in the application."""
+    if "qtbot" in request.fixturenames:
+        from geofit.gui.garbage import collect_here
+
+        collect_here(request.getfixturevalue("qapp"))
+
+
+@pytest.fixture(autouse=True)
 def nothing_left(request):
     """No task and no thread of ours outlives its test, no window stays, no timer of a gone window runs."""
     before = set(threading.enumerate())
@@ -134,13 +143,8 @@ def app(qtbot, monkeypatch, qapp):
     desktop.session.end()
     window.deleteLater()
     desktop.deleteLater()
-    # A collection of garbage amid the end of a window would free objects that Qt is about to free.
     gc.collect()
-    gc.disable()
-    try:
-        qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
-    finally:
-        gc.enable()
+    qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
 
 
 @pytest.fixture(scope="session")
