@@ -72,7 +72,7 @@ def test_p10_to_p90_holds_the_volume_of_most_bodies_of_outlines() -> None:
         widths.append((volumes.p90 - volumes.p10) / volume)
         kinds.append(kind)
     # 80 %, and two standard errors of a share of sixteen; benchmarks/bodies.py has two hundred.
-    assert 0.6 <= np.mean(held)
+    assert np.mean(held) >= 0.6
     ellipsoids = np.array(["ellipsoid" in kind for kind in kinds])
     assert np.mean(np.array(held)[ellipsoids]) >= 0.5
     assert np.median(np.array(widths)[ellipsoids]) < 0.02
