@@ -63,6 +63,20 @@ def collected_here(request):
 
 
 @pytest.fixture(autouse=True)
+def held(request, monkeypatch):
+    """What a test shows lives until it is closed, as windows of the application do; qtbot alone does not hold it."""
+    if "qtbot" in request.fixturenames:
+        qtbot, widgets = request.getfixturevalue("qtbot"), []
+        add = qtbot.addWidget
+
+        def hold(widget, **more):
+            widgets.append(widget)
+            add(widget, **more)
+
+        monkeypatch.setattr(qtbot, "addWidget", hold)
+
+
+@pytest.fixture(autouse=True)
 def nothing_left(request):
     """No task and no thread of ours outlives its test, no window stays, no timer of a gone window runs."""
     before = set(threading.enumerate())
