@@ -1,15 +1,18 @@
 """The field away from its data: sites of varied truths, many scattered points, folds of the real sets.
 
 Run ``python benchmarks/field.py [sites [COUNT]] [scattered [N ...]] [real [SET ...]] [--page]`` (default: a few sites
-and 10,000 points, within two minutes); ``--page`` writes the sites to docs/field.md. Errors are root mean squares;
-every truth has its own seed.
+and 10,000 points, within two minutes); ``--page`` writes the sites to docs/field.md, the folds to docs/real_folds.md.
+Errors are root mean squares; every truth has its own seed.
 """
 
 from __future__ import annotations
 
+import multiprocessing
 import sys
 import time
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,14 +23,17 @@ from geofit import FitSettings, GeofitError, HorizonFit, PointSet, fit_horizon
 from geofit.prediction.kriging import krige_left_out
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
-from field_page import Row, write_page
+from field_page import METHODS, Folds, Row, folds_table, write_folds, write_page
 from peers.gp import KERNELS, fit_process
 from peers.pspline import PSpline
-from realdata.score import folds, thin_plate
+from peers.smooth_plate import smooth_plate
+from realdata.score import folds, one_a_place, thin_plate
 from realdata.sets import SETS, data_folder, rectangle
 from truth import EASTING, NORTHING, Height, hills, rms
 
 SIZE = 2000.0
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+PROCESSES = 2
 #: Noise (m) and least spacing along the sections (m) that the sites go through.
 NOISES, SPACINGS = (0.01, 0.05, 0.15, 0.3), (2.0, 6.0, 15.0, 30.0)
 #: Spans of the plain P-spline, and its penalty.
@@ -174,7 +180,7 @@ def sites(seeds: list[int], page: bool = False) -> None:
         print(f"{word:42s}{figures[0]:7.2f}{figures[1]:7.2f}{'':17s}{figures[3]:8.1f}{figures[4]:7.2f}")
     print(f"core not exact on {lost} of {len(table)} sites\n")
     if page:
-        write_page(page_rows, (seeds[0], seeds[-1] + 1), Path(__file__).resolve().parents[1] / "docs")
+        write_page(page_rows, (seeds[0], seeds[-1] + 1), DOCS)
 
 
 def cloud(seed: int, n: int, noise: float = 0.05) -> tuple[PointSet, Height]:
@@ -212,68 +218,48 @@ def scattered(counts: list[int]) -> None:
     print()
 
 
-def real(keys: list[str]) -> None:
+def real(keys: list[str], page: bool = False) -> None:
     folder = data_folder()
     if folder is None:
         print("The real data are not here. Set GEOFIT_DATA to their folder, or lay them at ../shared/data.")
         return
-    print("ten folds over holes; ratio: error / best of the others")
-    print(
-        f"{'set':34s}{'n':>6s}{'geofit':>8s}{'plate':>8s}{'kriging':>8s}{'OK':>8s}{'UK':>8s}{'ratio':>7s}"
-        f"{'none':>5s}{'s a fit':>8s}"
-    )
-    ratios = []
-    for key in keys:
-        one = SETS[key](folder)
-        for name, points in one.site.horizons.items():
-            line = _folds(points)
-            if line is None:
-                continue
-            ours, others, none, seconds = line
-            ratios.append(ours / np.nanmin(others))
-            print(
-                f"{f'{key}: {name}'[:33]:34s}{len(points):6d}{ours:8.2f}"
-                + "".join(f"{other:8.2f}" for other in others)
-                + f"{ratios[-1]:7.2f}{none:5d}{seconds:8.2f}",
-                flush=True,
-            )
-    share = float(np.mean(np.array(ratios) <= 1.02))
-    print(f"geometric mean {np.exp(np.mean(np.log(ratios))):.3f}, worst {max(ratios):.2f}, at most 1.02 on {share:.0%}")
+    names = [(key, name) for key in keys for name in SETS[key](folder).site.horizons]
+    with ProcessPoolExecutor(PROCESSES, mp_context=multiprocessing.get_context("spawn")) as pool:
+        lines = [line for line in pool.map(_folds, *zip(*names, strict=True)) if line is not None]
+    print("\n".join(folds_table(lines)))
+    if page:
+        write_folds(lines, DOCS)
 
 
-def _folds(points: PointSet) -> tuple[float, list[float], int, float] | None:
-    """Return the error of geofit, those of the others, how many points geofit leaves out, and seconds a fit."""
+def _folds(key: str, name: str) -> Folds | None:
+    """Return the errors of geofit and the others on points that no parameter of theirs was chosen with."""
+    real_set = SETS[key](data_folder())
+    points = real_set.site.horizons[name]
     fold, area, z = folds(points), rectangle(points.xyz), points.xyz[:, 2]
     plane = points.xyz[:, :2] - points.xyz[:, :2].mean(axis=0)
     groups = [np.flatnonzero(fold == k) for k in np.unique(fold)]
-    ours, plate = (np.full(len(z), np.nan) for _ in range(2))
-    dense = np.full((2, len(z)), np.nan)
-    seconds = 0.0
+    found = {method: np.full(len(z), np.nan) for method in METHODS}
     for group in groups:
         rest = np.setdiff1d(np.arange(len(z)), group)
-        start = time.process_time()
+        there = points.xyz[group, :2]
         try:
             surface = fit_horizon(points[rest], FitSettings(), area)
-            ours[group] = surface.elevation(*points.xyz[group, :2].T)
+            found["geofit"][group] = surface.elevation(*there.T)
         except GeofitError as error:
             print("   ", error)
-        seconds += time.process_time() - start
-        plate[group] = thin_plate(points.xyz[rest], points.xyz[group, :2])
-        # Every method chooses its parameters without the points that it is to predict, as geofit does.
-        for drift, row in enumerate(dense):
-            found = (fit_process(plane[rest], z[rest], kernel, drift) for kernel in KERNELS)
-            process = min(found, key=lambda one: one.value)
-            row[group] = process.predict(plane[rest], z[rest], plane[group])[0]
-    known = np.isfinite(ours)
+        found["thin plate"][group] = thin_plate(points.xyz[rest], there)
+        found["smoothing plate"][group] = smooth_plate(np.column_stack(one_a_place(points.xyz[rest])), there)
+        for drift, method in enumerate(("GP, constant", "GP, plane")):
+            processes = (fit_process(plane[rest], z[rest], kernel, drift) for kernel in KERNELS)
+            process = min(processes, key=lambda one: one.value)
+            found[method][group] = process.predict(plane[rest], z[rest], plane[group])[0]
+    with suppress(np.linalg.LinAlgError):  # points at one location
+        found["kriging"][:] = krige_left_out(plane, z, groups)
+    known = np.isfinite(found["geofit"])
     if not known.any():
         return None
-    try:
-        kriged = krige_left_out(plane, z, groups)
-    except np.linalg.LinAlgError:  # points at one location
-        kriged = np.full(len(z), np.nan)
-    others = [plate, kriged, *dense]
-    figures = [rms((other - z)[known]) for other in others]
-    return rms((ours - z)[known]), figures, int((~known).sum()), seconds / len(groups)
+    errors = tuple(rms((found[method] - z)[known]) for method in METHODS)
+    return Folds(f"{real_set.title}: {name}", len(z), int((~known).sum()), errors)
 
 
 def main() -> None:
@@ -293,7 +279,7 @@ def main() -> None:
         elif part == "scattered":
             scattered([int(word) for word in more] or [5_000, 10_000, 20_000])
         else:
-            real(more or ["chamaya", "kimberlina", "weka_hills", "muensterland", "copper_creek"])
+            real(more or ["chamaya", "kimberlina", "weka_hills", "muensterland", "copper_creek"], "--page" in sys.argv)
 
 
 if __name__ == "__main__":

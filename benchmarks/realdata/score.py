@@ -11,7 +11,7 @@ from geofit import FitSettings, GeofitError, PointSet, fit_horizon
 
 from .sets import rectangle
 
-__all__ = ["Errors", "Score", "folds", "left_out_errors", "linear", "score", "thin_plate"]
+__all__ = ["Errors", "Score", "folds", "left_out_errors", "linear", "one_a_place", "score", "thin_plate"]
 
 FOLDS, SEED = 10, 2011
 
@@ -58,7 +58,7 @@ def folds(points: PointSet, count: int = FOLDS, seed: int = SEED) -> np.ndarray:
     return shuffled[group]
 
 
-def _places(xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def one_a_place(xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return one point a place (x, y), with the mean of its elevations."""
     xy, inverse, count = np.unique(xyz[:, :2], axis=0, return_inverse=True, return_counts=True)
     return xy, np.bincount(inverse.reshape(-1), xyz[:, 2]) / count
@@ -66,7 +66,7 @@ def _places(xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def thin_plate(xyz: np.ndarray, places: np.ndarray) -> np.ndarray:
     """Return scipy's exact thin-plate spline at (m, 2) places, in scaled coordinates, one point a place."""
-    xy, z = _places(xyz)
+    xy, z = one_a_place(xyz)
     centre, scale = xy.mean(axis=0), np.ptp(xy, axis=0).max()
     spline = RBFInterpolator((xy - centre) / scale, z, kernel="thin_plate_spline")
     return spline((places - centre) / scale)
@@ -74,7 +74,7 @@ def thin_plate(xyz: np.ndarray, places: np.ndarray) -> np.ndarray:
 
 def linear(xyz: np.ndarray, places: np.ndarray) -> np.ndarray:
     """Return scipy's linear interpolation at (m, 2) places, nan outside the points' hull."""
-    xy, z = _places(xyz)
+    xy, z = one_a_place(xyz)
     centre, scale = xy.mean(axis=0), np.ptp(xy, axis=0).max()
     return LinearNDInterpolator((xy - centre) / scale, z)((places - centre) / scale)
 
