@@ -69,9 +69,9 @@ class Desktop(QObject):
         Returns the exit code.
         """
         sys.excepthook = self._hear_mistake
-        # Python hears Ctrl+C only while it runs: the timer of the collector lets it, now and then.
+        # Python handles Ctrl+C only while it runs; the garbage collector's timer wakes it twice a second.
         signal.signal(signal.SIGINT, lambda *_: self.window.close())
-        # What the start loaded stays: a collection need not go through it, which takes 0.2 s.
+        # Modules loaded at start-up are never garbage; traversing them would take 0.2 s per full collection.
         gc.freeze()
         self.window.show()
         if splash is not None:

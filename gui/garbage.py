@@ -1,7 +1,7 @@
-"""Garbage is collected in the window's thread alone.
+"""Cyclic garbage is collected in the window's thread only.
 
-Python collects cycles in whichever thread happens to allocate. Where that is a task's, the windows of these cycles die
-outside the thread that they belong to, and Qt crashes then, or later.
+Python collects reference cycles in whichever thread allocates. A collection in a worker thread destroys unreferenced
+widgets outside the thread that owns them, and Qt crashes immediately or later.
 """
 
 from __future__ import annotations
@@ -12,22 +12,22 @@ from PySide6.QtCore import QObject, QTimer
 
 __all__ = ["Collector", "collect_here"]
 
-#: Milliseconds between two looks at how much has gathered.
+#: Milliseconds between two checks of the collector's counts.
 PAUSE = 500
 
 
 class Collector(QObject):
-    """Collects, in its own thread, as often as Python itself would ask for it."""
+    """Replaces Python's automatic collection by a timer in the thread of its parent."""
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
         gc.disable()
         self._timer = QTimer(self)
-        self._timer.timeout.connect(self.look)
+        self._timer.timeout.connect(self.collect)
         self._timer.start(PAUSE)
 
-    def look(self) -> None:
-        """Collect the oldest generation whose count is beyond its threshold."""
+    def collect(self) -> None:
+        """Collect the oldest generation whose count exceeds its threshold."""
         counts, thresholds = gc.get_count(), gc.get_threshold()
         for generation in (2, 1, 0):
             if counts[generation] > thresholds[generation]:
@@ -36,5 +36,5 @@ class Collector(QObject):
 
 
 def collect_here(application: QObject) -> Collector:
-    """Collect garbage in this thread, that of the application, from now on."""
+    """Collect garbage in the application's thread only, from now on."""
     return application.findChild(Collector) or Collector(application)

@@ -86,7 +86,7 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldCho
             closest = CLOSE if first.field.alpha <= degree else EVEN if settled else LESS_EVEN
             best = _shortened(first, _finer(data.area, degree, limit, closest), on)
             if best is not first:
-                # What spans as long as the first ones give is known.
+                # Spaces no finer than the first one have been evaluated already.
                 between = (one for one in _coarser(data.area, degree, best.space.size) if one.size > first.space.size)
                 best = _lengthened(best, between, on)
         return best

@@ -57,22 +57,22 @@ def test_a_left_out_section_of_bodies_that_bend_and_branch(name: str, count: int
 
 def test_the_band_between_sections_holds_the_true_surface_of_varied_bodies() -> None:
     """80 % of it; scaled by contacts left out one by one, next to their neighbours on the outline, it held 67 %."""
-    shares = [band_share(seed)[1] for seed in range(200, 216)]
-    assert 0.72 <= np.mean(shares) <= 0.88
-    assert np.median(shares) > 0.72
+    shares = [band_share(seed)[1] for seed in range(200, 230)]
+    assert 0.74 <= np.mean(shares) <= 0.86
+    assert np.median(shares) > 0.74
 
 
 def test_p10_to_p90_holds_the_volume_of_most_bodies_of_outlines() -> None:
     """Of ellipsoids, too, which the sections give to a thousandth: a band may be narrow and must not be nothing."""
     held, widths, kinds = [], [], []
-    for seed in range(300, 316):
+    for seed in range(300, 330):
         kind, truth, outlines = sectioned_case(seed)
         volumes, volume = fit_body(from_outlines(outlines)).volumes(), volume_of(truth)
         held.append(volumes.p10 < volume < volumes.p90)
         widths.append((volumes.p90 - volumes.p10) / volume)
         kinds.append(kind)
-    # 80 %, and two standard errors of a share of sixteen; benchmarks/bodies.py has two hundred.
-    assert np.mean(held) >= 0.6
+    # 80 %, and two standard errors of a share.
+    assert 0.65 <= np.mean(held) <= 0.95
     ellipsoids = np.array(["ellipsoid" in kind for kind in kinds])
     assert np.mean(np.array(held)[ellipsoids]) >= 0.5
     assert np.median(np.array(widths)[ellipsoids]) < 0.02

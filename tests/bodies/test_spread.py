@@ -19,7 +19,7 @@ from geofit.bodies.posterior import BodyPosterior
 @pytest.mark.parametrize(("make", "error"), [(case, 0.05), (other_case, 0.08)])
 def test_bodies_of_kinds_that_were_used_and_not_used_to_calibrate(make: Callable[[int], Case], error: float) -> None:
     held, errors, chance, inside = [], [], [], []
-    for seed in range(24):
+    for seed in range(40):
         one = make(seed)
         if len(one.data.contacts) < 6:
             continue
@@ -32,11 +32,11 @@ def test_bodies_of_kinds_that_were_used_and_not_used_to_calibrate(make: Callable
         places = np.random.default_rng(seed).uniform(-0.9, 0.9, (3000, 3))
         chance.append(BodyPosterior(body).probability(places * SIZE + ORIGIN))
         inside.append(one.truth(places) < 0)
-    # 80 %, and two standard errors of a share of 24; benchmarks/bodies.py has two hundred.
-    assert 0.64 <= np.mean(held) <= 0.96
+    # 80 %, and two standard errors of a share.
+    assert 0.65 <= np.mean(held) <= 0.95
     assert np.median(np.abs(errors)) < error
     p, true = np.concatenate(chance), np.concatenate(inside)
     for low, high in ((0.05, 0.2), (0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 0.95)):
         own = (p > low) & (p <= high)
         assert own.sum() > 300
-        assert abs(p[own].mean() - true[own].mean()) < 0.1, (low, high)
+        assert abs(p[own].mean() - true[own].mean()) < 0.08, (low, high)

@@ -55,7 +55,7 @@ def own_settings(tmp_path, monkeypatch):
 
 @pytest.fixture(autouse=True)
 def collected_here(request):
-    """Garbage dies where windows may die, as in the application."""
+    """Collect garbage in the window's thread, as the application does."""
     if "qtbot" in request.fixturenames:
         from geofit.gui.garbage import collect_here
 
@@ -64,7 +64,7 @@ def collected_here(request):
 
 @pytest.fixture(autouse=True)
 def held(request, monkeypatch):
-    """What a test shows lives until it is closed, as windows of the application do; qtbot alone does not hold it."""
+    """Keep each widget alive until it is closed, as the application does; qtbot itself holds a weak reference."""
     if "qtbot" in request.fixturenames:
         qtbot, widgets = request.getfixturevalue("qtbot"), []
         add = qtbot.addWidget

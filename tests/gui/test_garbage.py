@@ -1,4 +1,4 @@
-"""Windows that nobody holds any more die in the thread of the windows, not in that of a task."""
+"""Unreferenced widgets are destroyed in the window's thread, not in a worker thread."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from geofit.gui.garbage import Collector, collect_here
 
 
 class Held(QObject):
-    """An object in a cycle, as most dialogs are: their signals hold methods of theirs."""
+    """An object in a reference cycle, like most dialogs, whose signals refer to their own methods."""
 
     def __init__(self, died):
         super().__init__()
@@ -22,13 +22,13 @@ class Held(QObject):
 
 
 def allocate(*, progress):
-    """Make far more objects than Python lets gather before it collects."""
+    """Allocate far more objects than the threshold of Python's collector."""
     for _ in range(200):
         kept = [[] for _ in range(2000)]
     return len(kept)
 
 
-def test_a_task_frees_no_window(qtbot, qapp):
+def test_a_worker_thread_destroys_no_widget(qtbot, qapp):
     died, done = [], []
     for _ in range(20):
         Held(died)
@@ -39,7 +39,7 @@ def test_a_task_frees_no_window(qtbot, qapp):
     assert died == 20 * [threading.get_ident()]
 
 
-def test_garbage_is_collected_as_often_as_without_it(qtbot, qapp):
+def test_every_generation_is_collected(qtbot, qapp):
     collector = collect_here(qapp)
     assert not gc.isenabled()
     assert collect_here(qapp) is collector
@@ -49,7 +49,7 @@ def test_garbage_is_collected_as_often_as_without_it(qtbot, qapp):
     kept = []
     for _ in range(12 * 12):
         kept.append([[] for _ in range(1000)])
-        collector.look()
+        collector.collect()
     after = [generation["collections"] for generation in gc.get_stats()]
     assert len(kept) == 144
     assert all(new > old for new, old in zip(after, before, strict=True))

@@ -124,12 +124,13 @@ def test_a_slice_of_a_large_volume_follows_the_slider(qtbot, dialog, tmp_path):
     dialog.slices.canvas.draw()
     changing = time.process_time() - began
     np.testing.assert_array_equal(dialog.volume.counts, counted)
-    # Against numpy's count of the same voxels, as processors differ.
+    # Compared with numpy's count of the same voxels, since processors differ: it took 3 s where the limits were 3, 0.05
+    # and 0.25 s.
     assert reading < whole
-    assert np.median(took) < 0.03 * whole
+    assert np.median(took) < whole / 60
     # Nothing is kept of the slices before: the last ones are as quick as the first.
-    assert np.median(took[-10:]) < 0.03 * whole
-    assert changing < 0.15 * whole
+    assert np.median(took[-10:]) < whole / 60
+    assert changing < whole / 12
     assert dialog.porosity.text() == f"{100 * (values <= 99).mean():.2f} %"
 
 

@@ -40,7 +40,7 @@ app.start(None)
 """
 
 
-#: What any window with a view of VTK takes: the libraries, the widget, one picture.
+#: The least that a window with a VTK view needs: the libraries, the widget, one rendered frame.
 PEER = """
 import os, time
 from PySide6.QtWidgets import QApplication, QMainWindow
@@ -64,17 +64,17 @@ def run(code):
 
 
 def test_a_splash_comes_first_and_the_window_soon():
-    """Time of the processor against an empty window with a view of VTK, as processors differ."""
+    """CPU time compared with that of an empty window with a VTK view, since processors differ."""
     runs = [(run(CODE), run(PEER)) for _ in range(2)]
     for told, _ in runs:
         assert told["seen"]
         assert told["heavy"] == []
         assert told["usable"]
         assert told["said"][1] == 1.0
-    # 0.15 and 2.2 on an idle machine.
+    # Measured on an idle machine: 0.15 and 2.1.
     peer = min(peer for _, peer in runs)
-    assert min(told["splash"] for told, _ in runs) < 0.5 * peer
-    assert min(told["window"] for told, _ in runs) < 3.5 * peer
+    assert min(told["splash"] for told, _ in runs) < 0.4 * peer
+    assert min(told["window"] for told, _ in runs) < 3 * peer
 
 
 def test_folds_alone_load_the_signal_processing():
