@@ -42,7 +42,7 @@ def fit(seed, lift, name):
 @pytest.fixture(scope="module")
 def crossing():
     """A thin stratum whose contacts were seen at different places: between these the fits cross."""
-    return {"top": fit(1, 0.3, "top"), "base": fit(2, 0.0, "base")}
+    return {"top": fit(1, 0.5, "top"), "base": fit(2, 0.0, "base")}
 
 
 @pytest.fixture(scope="module")
