@@ -8,6 +8,7 @@ Errors are root mean squares; every truth has its own seed.
 from __future__ import annotations
 
 import multiprocessing
+import os
 import sys
 import time
 from collections.abc import Callable
@@ -223,16 +224,18 @@ def real(keys: list[str], page: bool = False) -> None:
     if folder is None:
         print("The real data are not here. Set GEOFIT_DATA to their folder, or lay them at ../shared/data.")
         return
+    # One thread per process: two processes share two cores, and sums are the same on every machine.
+    os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
     names = [(key, name) for key in keys for name in SETS[key](folder).site.horizons]
     with ProcessPoolExecutor(PROCESSES, mp_context=multiprocessing.get_context("spawn")) as pool:
-        lines = [line for line in pool.map(_folds, *zip(*names, strict=True)) if line is not None]
+        lines = list(pool.map(_folds, *zip(*names, strict=True)))
     print("\n".join(folds_table(lines)))
     if page:
         write_folds(lines, DOCS)
 
 
-def _folds(key: str, name: str) -> Folds | None:
-    """Return the errors of geofit and the others on points that no parameter of theirs was chosen with."""
+def _folds(key: str, name: str) -> Folds:
+    """Predict each fold of a horizon by methods that estimate their parameters without it."""
     real_set = SETS[key](data_folder())
     points = real_set.site.horizons[name]
     fold, area, z = folds(points), rectangle(points.xyz), points.xyz[:, 2]
@@ -246,19 +249,17 @@ def _folds(key: str, name: str) -> Folds | None:
             surface = fit_horizon(points[rest], FitSettings(), area)
             found["geofit"][group] = surface.elevation(*there.T)
         except GeofitError as error:
-            print("   ", error)
+            print(f"{real_set.title}: {name}: {error}", flush=True)
         found["thin plate"][group] = thin_plate(points.xyz[rest], there)
         found["smoothing plate"][group] = smooth_plate(np.column_stack(one_a_place(points.xyz[rest])), there)
         for drift, method in enumerate(("GP, constant", "GP, plane")):
             processes = (fit_process(plane[rest], z[rest], kernel, drift) for kernel in KERNELS)
             process = min(processes, key=lambda one: one.value)
             found[method][group] = process.predict(plane[rest], z[rest], plane[group])[0]
-    with suppress(np.linalg.LinAlgError):  # points at one location
+    with suppress(np.linalg.LinAlgError):  # coincident points; the page shows a dash
         found["kriging"][:] = krige_left_out(plane, z, groups)
     known = np.isfinite(found["geofit"])
-    if not known.any():
-        return None
-    errors = tuple(rms((found[method] - z)[known]) for method in METHODS)
+    errors = tuple(rms((found[method] - z)[known]) if known.any() else np.nan for method in METHODS)
     return Folds(f"{real_set.title}: {name}", len(z), int((~known).sum()), errors)
 
 
@@ -279,7 +280,7 @@ def main() -> None:
         elif part == "scattered":
             scattered([int(word) for word in more] or [5_000, 10_000, 20_000])
         else:
-            real(more or ["chamaya", "kimberlina", "weka_hills", "muensterland", "copper_creek"], "--page" in sys.argv)
+            real(more or list(SETS), "--page" in sys.argv and not more)
 
 
 if __name__ == "__main__":
