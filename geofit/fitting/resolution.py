@@ -14,6 +14,7 @@ import numpy as np
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
 from geofit.fitting.field import FieldChoice, choose_covariance, relative_noise
+from geofit.fitting.likelihood import BEHIND
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
@@ -95,7 +96,8 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldCho
     if sketch.size < space.size:
         some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
         found = choose_covariance(sketch, data.plane[some], data.value[some], noise[some], given, (), data.trend)
-        known = [one for one, _ in found]
+        # Finer spans have never yet made up for more.
+        known = [one for one, value in found if value < found[0][1] + BEHIND]
     firsts = on(space, known)
     # What is relief to a rougher field on finer spans may pass for noise about a smoother one.
     rivals = [
