@@ -70,13 +70,14 @@ class LeftOut:
 
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
-    """Standard deviation of the surface on a grid in map coordinates, metres.
+    """Standard deviation of the surface on a grid, in map coordinates unless ``frame`` says otherwise, metres.
 
     ``x`` (nx,), ``y`` (ny,) ascending, ``sd`` (ny, nx), nan outside the study area. ``factor`` is by how much the
     posterior standard deviation was widened (above 1) so that 90 % of the left-out points lie in the 90 % band: the
     median of the local ``factors`` (ny, nx). With ``frame`` "best-plane" x and y run along the strike and up the dip
-    of the surface's best plane, metres about its origin, and sd is measured across it. The contact that a new hole
-    finds scatters about the surface by ``noise`` more (1 sigma).
+    of the surface's best plane, metres about its origin, and sd is measured across it. With "sections" they are the
+    parameters of a folded surface, metres: x across its sections, y along them; sd is measured along its normal. The
+    contact that a new hole finds scatters about the surface by ``noise`` more (1 sigma).
     """
 
     x: Floats
@@ -86,7 +87,7 @@ class Uncertainty:
     mean: float
     max: float
     factors: Floats
-    frame: Literal["map", "best-plane"] = "map"
+    frame: Literal["map", "best-plane", "sections"] = "map"
     noise: float = 0.0
 
     def __repr__(self) -> str:

@@ -6,6 +6,9 @@ prior holds, adds noise^2 D M^-1 D', where D = P^-1 rho E B is what the field le
 M = B' rho E (B - D) their normal matrix
 (G. Wahba, J. R. Stat. Soc. B 45, 1983, 133-150). A variance b' P^-1 b asks for the band of P^-1 alone (Takahashi,
 Fagan & Chin 1973).
+
+The three coordinates of a folded surface are fields of one covariance and one noise. So each has the same variance, and
+so has the surface along any direction, its normal too.
 """
 
 from __future__ import annotations
@@ -17,8 +20,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from geofit.data.errors import FitError
-from geofit.data.messages import message
 from geofit.fitting.active_points import gather_points
 from geofit.fitting.field import FieldChoice, planes_of, relative_noise, slope_of, widened_space
 from geofit.fitting.model import Model
@@ -46,8 +47,8 @@ class Posterior:
     ----------
     kept : (n,) array of int
         Numbers of the points that the fit honours, among all points.
-    plane, value, weight : (n, 2) and (n,) arrays
-        Their places, heights about the trend (m), and weights: 1 for a point of the field's own noise.
+    plane, value, weight : (n, 2), (n,) or (n, 3), and (n,) arrays
+        Their places, heights (or coordinates) about the trend (m), and weights: 1 for a point of the field's own noise.
     space : TensorSpace
         Space of the field, wider than the area; ``turned`` states that its u runs along the net's v, for a narrower
         band.
@@ -55,13 +56,13 @@ class Posterior:
         Factor of P.
     drift, moment : (size, r) and (r, r) arrays
         D and M.
-    field : (size,) array
+    field : (size,) or (size, 3) array
         Coefficients about the trend, metres.
     model : Field
         The field's covariance and noise.
     square : float
         The penalised sum of squares, z' W (z - f) and the slope's: what noise^2 is estimated from.
-    trend : (3,) array
+    trend : (3,) or (3, 3) array
         Plane 1, u, v under the field, metres.
     """
 
@@ -102,7 +103,7 @@ class Posterior:
         return np.asarray(self.noise**2 * self._quadratic(plane))
 
     def height(self, plane: Floats) -> Floats:
-        """Return the (n,) heights of the field at (n, 2) places, trend included, metres."""
+        """Return the (n,) heights or (n, 3) coordinates of the field at (n, 2) places, trend included, metres."""
         base = np.column_stack([np.ones(len(plane)), plane]) @ self.trend
         return np.asarray(base + self.matrix(plane) @ self.field)
 
@@ -144,22 +145,16 @@ class Posterior:
 
 
 def posterior(model: Model) -> Posterior:
-    """Return the posterior of the field of a fitted height field.
+    """Return the posterior of the field of a fitted surface.
 
     Raises
     ------
     FitError
-        If the surface is parametric, or its system has no solution.
+        If its system has no solution.
     """
     given, net = model.problem, model.net
-    if given.parametrization.parametric:
-        raise FitError(
-            message(
-                "fitting.posterior-needs-height-field",
-                "A parametric surface is not a height field, and has no posterior. Leave out its sections instead.",
-            )
-        )
-    kept = given.kept & given.parametrization.parametrized
+    # The points between the sections of a folded surface have found their places by now.
+    kept = given.kept if given.parametrization.parametric else given.kept & given.parametrization.parametrized
     split = given.split if given.split.core is not None else None
     data = gather_points(given.points, given.parametrization, kept, split, given.slopes).whole()
     space = net.base if net.base.size <= LARGEST else even_space(data.area, _SPAN, net.base.degree, LARGEST)
@@ -179,18 +174,20 @@ def posterior(model: Model) -> Posterior:
     held = field.rho * precision.times_planes(field.kappa, field.stretch) @ slope.directions
     factor = BlockFactor(band_sum(band, prior))
     solved = factor.solve(np.column_stack([right, held]))
-    free, drift = solved[:, :1], solved[:, 1:]
+    columns = solved.shape[1] - held.shape[1]
+    free, drift = solved[:, :columns], solved[:, columns:]
     moment, cross = planes_of(space, slope, field.hold, held, free, drift)
     slopes = np.linalg.solve(moment, cross)
-    coefficients = (free + drift @ slopes)[:, 0]
-    off = slopes[:, 0] - slope.aim
+    value = np.asarray(data.value[:])
+    coefficients = (free + drift @ slopes).reshape(-1, *value.shape[1:])
+    off = slopes.sum(axis=1) - slope.aim
     square = float(
-        weight @ np.asarray(data.value[:]) ** 2
+        (weight @ value**2).sum()
         + weighed
-        - right @ coefficients
+        - (right * coefficients).sum()
         - slope.aim @ slope.precision(field.hold) @ off
     )
     return Posterior(
-        np.flatnonzero(kept), np.asarray(data.plane[:]), np.asarray(data.value[:]), weight, space, turned, factor,
-        drift, moment, coefficients, field, square, data.trend,
+        np.flatnonzero(kept), np.asarray(data.plane[:]), value, weight, space, turned, factor, drift, moment,
+        coefficients, field, square, data.trend,
     )  # fmt: skip

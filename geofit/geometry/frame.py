@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,9 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.long_arrays import blocks, covariance
 from geofit.data.points import PointSet
 
-__all__ = ["Frame", "best_plane_frame", "map_frame", "plane_axes", "section_azimuth"]
+__all__ = ["Frame", "FrameKind", "best_plane_frame", "map_frame", "plane_axes", "section_azimuth"]
 
 Floats = NDArray[np.float64]
+#: What a frame lies along: the map, the points' best plane, or the map below a folded surface, a height over no plane.
+FrameKind = Literal["map", "best-plane", "sections"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,13 +28,13 @@ class Frame:
         Map coordinates of the local origin, metres.
     axes : (3, 3) array
         Rows are the unit vectors of u, v and the height w.
-    kind : str
+    kind : FrameKind
         "map", "best-plane" or "sections".
     """
 
     origin: Floats
     axes: Floats
-    kind: str
+    kind: FrameKind
 
     def to_local(self, xyz: ArrayLike) -> Floats:
         """Return (n, 3) local coordinates of (n, 3) map coordinates."""

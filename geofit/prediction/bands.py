@@ -20,12 +20,14 @@ from geofit.data.prediction import PredictionResult, Uncertainty
 from geofit.fitting.calibration import Calibration, uncalibrated
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
+from geofit.fitting.net import Net
 from geofit.fitting.posterior import Posterior, posterior
 from geofit.geometry.clip import inside
 from geofit.geometry.hull import within_hull
+from geofit.geometry.projection import searchable
 from geofit.splines import bspline
 
-__all__ = ["Grid", "PredictionError", "band", "grid_over", "prediction_sd", "uncertainty_on"]
+__all__ = ["Grid", "PredictionError", "band", "band_directions", "grid_over", "prediction_sd", "uncertainty_on"]
 
 Floats = NDArray[np.float64]
 UNCERTAINTY = message(
@@ -55,6 +57,8 @@ class PredictionError:
         """Return the (n,) mean square errors at (n, 2) places in units, before calibration, m^2."""
         net = self.model.net
         departure = net.space.matrix(plane) @ net.coefficients - self.posterior.height(plane)
+        if departure.ndim == 2:
+            departure = (departure * _normals(net, plane)).sum(axis=1)
         return np.asarray(self.posterior.variance(plane) + departure**2)
 
     def sd(self, plane: Floats) -> Floats:
@@ -80,12 +84,14 @@ class Grid:
     def places(self, model: Model) -> Floats:
         """Return the map coordinates (k, 3) of the surface at the nodes on it."""
         net, frame = model.net, model.problem.parametrization.frame
-        local = np.column_stack([self.plane * net.unit, net.space.matrix(self.plane) @ net.coefficients])
+        local = net.space.matrix(self.plane) @ net.coefficients
+        if local.ndim == 1:
+            local = np.column_stack([self.plane * net.unit, local])
         return frame.turn_back(local) + frame.origin
 
 
 def grid_over(surface: HorizonFit) -> Grid:
-    """Lay a grid over the study area; over the hull of its points, where a steep surface lies over its best plane."""
+    """Lay a grid over the study area; on a best plane, or in the parameters of a fold, over the hull of the points."""
     model = _model(surface)
     parametrization, unit = model.problem.parametrization, model.net.unit
     u0, u1, v0, v1 = parametrization.area
@@ -117,12 +123,9 @@ def uncertainty_on(grid: Grid, error_model: PredictionError) -> Uncertainty:
     """Return the standard deviation on the nodes of a grid."""
     factors = error_model.calibration.at(grid.plane)
     sd = factors * np.sqrt(error_model.variance(grid.plane))
-    frame: Literal["map", "best-plane"] = (
-        "map" if error_model.model.problem.parametrization.frame.kind == "map" else "best-plane"
-    )
     return Uncertainty(
         grid.x, grid.y, grid.at_nodes(sd), float(np.median(factors)), float(sd.mean()), float(sd.max()),
-        grid.at_nodes(factors), frame, error_model.posterior.noise,
+        grid.at_nodes(factors), error_model.model.problem.parametrization.frame.kind, error_model.posterior.noise,
     )  # fmt: skip
 
 
@@ -132,11 +135,12 @@ def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike,
     Parameters
     ----------
     surface : HorizonFit
-        A fitted height field.
+        A fitted surface.
     uncertainty : Uncertainty
         ``examine(surface).uncertainty``.
     xyz : (n, 3) array_like
-        Map coordinates on the surface, metres; (n, 2) is enough for a height field over the map.
+        Map coordinates on the surface, metres; (n, 2) is enough for a height field over the map. Beside a folded
+        surface the nearest place on it counts.
     of : {"surface", "contact"}
         Of the surface itself, or of the contact that a new hole finds there: it has the points' noise besides.
 
@@ -159,24 +163,32 @@ def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike,
     """
     require_kind("uncertainty", uncertainty, Uncertainty, UNCERTAINTY)
     model = _model(surface)
-    frame = model.problem.parametrization.frame
-    flat = np.ndim(xyz) > 0 and np.shape(xyz)[-1] == 2
-    if flat:
+    if np.ndim(xyz) > 0 and np.shape(xyz)[-1] == 2:
         xyz = np.insert(np.atleast_2d(np.asarray(xyz)), 2, 0.0, axis=1)
-    places = measurable_places(xyz)
-    if flat:
-        if frame.kind != "map":
+        if surface.frame != "map":
             raise FitError(
                 message(
                     "prediction.plane-needs-elevations",
-                    "A surface over its best plane needs (n, 3) coordinates; (n, 2) were given.",
+                    "A surface over its best plane, or a folded one, needs (n, 3) coordinates; (n, 2) were given.",
                 )
             )
-        plane = frame.plan(places[:, :2])
-    else:
-        plane = frame.to_local(places)[:, :2]
+    places = _parameters(surface, model, measurable_places(xyz))
     with threadpool_limits(limits=1):
-        return _sd(model, uncertainty, plane / model.net.unit, of)
+        return _sd(model, uncertainty, places, of)
+
+
+def band_directions(surface: HorizonFit, xyz: Floats) -> Floats:
+    """Return the unit vectors, (n, 3), along which the standard deviation is measured at (n, 3) places on a surface.
+
+    Upwards, across its best plane, or along the normals of a folded surface; to its upper side.
+    """
+    model = _model(surface)
+    axes = model.problem.parametrization.frame.axes
+    if not model.problem.parametrization.parametric:
+        across = axes[2] if axes[2, 2] >= 0 else -axes[2]
+        return np.tile(across, (len(xyz), 1))
+    normals = _normals(model.net, _parameters(surface, model, xyz)) * searchable(surface.patches).upwards
+    return np.asarray(normals @ axes)
 
 
 def band(
@@ -187,7 +199,7 @@ def band(
     Parameters
     ----------
     surface : HorizonFit
-        A fitted height field.
+        A fitted surface.
     found : PredictionResult or Uncertainty
         What :func:`geofit.prediction.examine.examine` found.
     share : float
@@ -199,7 +211,9 @@ def band(
     -------
     upper, lower : HorizonFit
         The same net, each control point moved by plus or minus z * sd at its Greville abscissa: Schoenberg's
-        variation-diminishing spline, which never swings below zero. Patches meet as those of the surface do.
+        variation-diminishing spline, which never swings below zero. Patches meet as those of the surface do. Control
+        points of a folded surface move along its normals; where the band is wider than a hinge is round, it crosses
+        itself.
 
     Raises
     ------
@@ -236,6 +250,8 @@ def band(
     abscissae = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
     with threadpool_limits(limits=1):
         offset = float(ndtri((1 + share) / 2)) * _sd(model, uncertainty, abscissae, of)
+    if model.net.coefficients.ndim == 2:
+        offset = offset[:, None] * _normals(model.net, abscissae) * searchable(surface.patches).upwards
     sides = []
     for sign, word in ((1, "upper"), (-1, "lower")):
         moved = model.with_net(replace(model.net, coefficients=model.net.coefficients + sign * offset))
@@ -249,6 +265,25 @@ def band(
             )
         )
     return sides[0], sides[1]
+
+
+def _parameters(surface: HorizonFit, model: Model, xyz: Floats) -> Floats:
+    """Return the places, (n, 2) in units, of (n, 3) map coordinates on a surface."""
+    if model.problem.parametrization.parametric:
+        foot = surface.project(xyz)
+        plane = np.column_stack([foot.u, foot.v])
+    else:
+        plane = model.problem.parametrization.frame.to_local(xyz)[:, :2]
+    return plane / model.net.unit
+
+
+def _normals(net: Net, plane: Floats) -> Floats:
+    """Return the unit normals of a folded surface at (n, 2) places in units, (n, 3) along the frame's axes."""
+    ways = (net.space.gradient_rows(plane, np.tile(way, (len(plane), 1))) for way in np.eye(2))
+    along, across = ((values[..., None] * net.coefficients[index]).sum(axis=1) for index, values in ways)
+    normal = np.cross(along, across)
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)[:, None]
+    return np.asarray(normal)
 
 
 def _sd(model: Model, uncertainty: Uncertainty, plane: Floats, of: Of) -> Floats:

@@ -12,10 +12,17 @@ from threadpoolctl import threadpool_limits
 from geofit.data.given import FIT, require_kind
 from geofit.data.guard import guarded
 from geofit.data.messages import Message, message
-from geofit.data.prediction import LeftOut, Outlier, PredictionResult, Suggestion
+from geofit.data.prediction import LeftOut, Outlier, PredictionResult, Suggestion, Uncertainty
 from geofit.data.progress import Progress, tell
 from geofit.data.verdict import LEAST_INSIDE
-from geofit.fitting.calibration import Calibration, common_factor, uncalibrated
+from geofit.fitting.calibration import (
+    Calibration,
+    LeftOutPoints,
+    calibrate,
+    common_factor,
+    share_inside,
+    uncalibrated,
+)
 from geofit.fitting.deletion import LinearFit, linear_fit
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
@@ -24,7 +31,7 @@ from geofit.fitting.posterior import Posterior, posterior
 from geofit.prediction.bands import Grid, PredictionError, grid_over, uncertainty_on
 from geofit.prediction.crossval import Fold, about_the_hull, calibrated, cross_validation_folds, left_out, one_by_one
 from geofit.prediction.drilling import suggest_holes
-from geofit.prediction.refits import sections_by_refit
+from geofit.prediction.refits import in_half_the_gap, sections_by_refit
 from geofit.prediction.small_sets import SMALL, Refits
 from geofit.prediction.thinplate import thin_plate_inverse
 from geofit.streaming.executors import Where
@@ -67,7 +74,8 @@ def examine(
         Errors at holes, sections and blocks left out (no refit: :mod:`geofit.fitting.deletion`; of fewer than
         30 points by true refits: :mod:`geofit.prediction.small_sets`) beside the
         thin-plate spline and kriging on the same folds; standard deviation on a grid, held to those errors; the next
-        holes; outliers.
+        holes; outliers. Of a folded surface its inner sections are left out, by true refits; no other method has such
+        a surface, and outliers are not looked for.
 
     Raises
     ------
@@ -101,7 +109,7 @@ def examine(
                 message("prediction.error-not-found", "the prediction error cannot be found: {reason}", reason=reason)
             )
 
-        look = sections_by_refit if model.problem.parametrization.parametric else _examine
+        look = _examine_folded if model.problem.parametrization.parametric else _examine
         where = Where(scheduler, workers, folder)
         found = guarded(lambda: look(surface, model, progress, where), None, missing)
         return _nothing(notes[0]) if found is None else found
@@ -148,23 +156,68 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None, where
         notes += [beyond] if beyond else []
         notes += _not_held(results[-1])
     tell(progress, "next holes", 0.8)
-    error_model = PredictionError(model, given, calibration)
+    suggestions, uncertainty = _between(grid, PredictionError(model, given, calibration), notes)
+    tell(progress, "done", 1.0)
+    return PredictionResult(tuple(results), uncertainty, suggestions, outliers, tuple(notes))
+
+
+def _examine_folded(surface: HorizonFit, model: Model, progress: Progress | None, where: Where) -> PredictionResult:
+    """Examine a folded surface: it is not a height field, so its sections are left out by new fits."""
+    tell(progress, "uncertainty", 0.0)
+    given, grid = posterior(model), grid_over(surface)
+    left, notes = sections_by_refit(surface, model, progress, where)
+    plane = model.problem.parametrization.plane / model.net.unit
+    nothing = LeftOutPoints(*(np.empty(0, kind) for kind in (int, float, float, float)))
+    expected = PredictionError(model, given, uncalibrated())
+    # Widened until it holds the sections left out too, as that of a height field holds the holes.
+    near = in_half_the_gap(left, expected)
+    calibration = calibrate(plane, near, nothing, left, grid.plane, expected.variance(grid.plane))
+    tell(progress, "next holes", 0.95)
+    suggestions, uncertainty = _between(grid, PredictionError(model, given, calibration), notes)
+    results = (_by_sections(model, left, calibration.at(plane)[left.point]),) if len(left.point) else ()
+    for found in results:
+        notes += _not_held(found)
+    tell(progress, "done", 1.0)
+    return PredictionResult(results, uncertainty, suggestions, (), tuple(notes))
+
+
+def _by_sections(model: Model, left: LeftOutPoints, factor: Floats) -> LeftOut:
+    """Return the cross-validation of a folded surface by its sections; no other method has such a surface."""
+    section = model.problem.parametrization.section
+    error, sd = (np.full(len(section), np.nan) for _ in range(2))
+    variance = factor**2 * left.variance + left.noise
+    error[left.point], sd[left.point] = left.error, np.sqrt(variance)
+    group = np.zeros(len(section), section.dtype)
+    group[left.point] = section[left.point]
+    size = np.abs(left.error)
+    return LeftOut(
+        "section", len(np.unique(group[left.point])), group, error, sd, float(np.sqrt(np.mean(size**2))),
+        float(size.mean()), float(left.error.mean()), float(size.max()), share_inside(left.error, variance),
+        share_inside(left.error, left.variance + left.noise), {},
+    )  # fmt: skip
+
+
+def _between(
+    grid: Grid, error_model: PredictionError, notes: list[Message]
+) -> tuple[tuple[Suggestion, ...], Uncertainty | None]:
+    """Return the next holes and the standard deviation between the points, with notes where there are none."""
     if not len(grid.plane):
         notes.append(
             message(
                 "prediction.points-without-area", "the points have no area: there is no standard deviation between them"
             )
         )
+        return (), None
     none: tuple[Suggestion, ...] = ()
     suggestions = guarded(
-        lambda: suggest_holes(grid, error_model) if len(grid.plane) else none,
+        lambda: suggest_holes(grid, error_model),
         none,
         lambda reason: notes.append(
             message("prediction.no-holes-suggested", "no holes are suggested: {reason}", reason=reason)
         ),
     )
     uncertainty = guarded(
-        lambda: uncertainty_on(grid, error_model) if len(grid.plane) else None,
+        lambda: uncertainty_on(grid, error_model),
         None,
         lambda reason: notes.append(
             message(
@@ -172,8 +225,7 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None, where
             )
         ),
     )
-    tell(progress, "done", 1.0)
-    return PredictionResult(tuple(results), uncertainty, suggestions, outliers, tuple(notes))
+    return suggestions, uncertainty
 
 
 def _left_out(

@@ -14,7 +14,7 @@ from geofit.data.points import PointSet
 from geofit.data.prediction import PredictionResult
 from geofit.data.site import Section, Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.prediction.bands import prediction_sd
+from geofit.prediction.bands import band_directions, prediction_sd
 from geofit.sampling.cut import CutLine, cut_section
 
 __all__ = ["Profile", "along_polyline", "profiles", "report_sections"]
@@ -97,19 +97,16 @@ def _profile(fit: HorizonFit, found: PredictionResult | None, section: Section, 
 
 
 def _within_section(fit: HorizonFit, section: Section, cut: CutLine) -> Floats:
-    """Return how a shift by one metre across the frame moves the trace in the plane of the section, (k, 2).
+    """Return how a shift by one metre of the surface moves its trace in the plane of the section, (k, 2).
 
     Moving a plane by w along its normal n moves its trace by w n' / |n'|^2, n' the part of n in the section.
     """
-    if fit.frame != "best-plane" or fit.model is None:
-        return np.tile([0.0, 1.0], (len(cut.distance), 1))
-    normal = fit.model.problem.parametrization.frame.turn_back(np.array([[0.0, 0.0, 1.0]]))[0]
-    normal = normal if normal[2] >= 0 else -normal
+    normal = band_directions(fit, cut.xyz)
     steps = np.diff(section.line, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     leg = np.clip(np.searchsorted(np.cumsum(lengths), cut.distance), 0, len(steps) - 1)
     ways = steps / lengths[:, None]
-    across = np.column_stack([ways[leg] @ normal[:2], np.full(len(leg), normal[2])])
+    across = np.column_stack([(ways[leg] * normal[:, :2]).sum(axis=1), normal[:, 2]])
     return np.asarray(across / np.maximum((across**2).sum(axis=1), 0.05)[:, None])
 
 

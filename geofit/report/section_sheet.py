@@ -50,26 +50,25 @@ def section_sheet(section: Section, site: Site, cut: Mapping[str, Sequence[Profi
     """
     lines = [line for of in cut.values() for line in of]
     length = float(np.linalg.norm(np.diff(section.line, axis=0), axis=1).sum())
-    z = np.concatenate([line.line[:, 1] for line in lines] or [np.zeros(1)])
+    ground = np.empty(0) if site.ground is None else _ground_line(section, site.ground, length)[1]
+    ground = ground[np.isfinite(ground)]
+    # A section that cuts no horizon shows the ground alone.
+    z = np.concatenate([line.line[:, 1] for line in lines] or [ground if len(ground) else np.zeros(1)])
     low, high = float(z.min()), float(z.max())
     reach = WIDEST_BAND * max(high - low, 0.02 * length)
     banded = [(line.lower, line.upper) for line in lines if line.lower is not None and line.upper is not None]
     for lower, upper in banded:
         low = min(low, max(float(np.nanmin(lower[:, 1])), float(z.min()) - reach))
         high = max(high, min(float(np.nanmax(upper[:, 1])), float(z.max()) + reach))
-    grounded = site.ground is not None
-    if site.ground is not None:
-        ground = _ground_line(section, site.ground, length)[1]
-        grounded = bool(np.isfinite(ground).any())
-        if grounded:
-            low, high = min(low, float(np.nanmin(ground))), max(high, float(np.nanmax(ground)))
+    if len(ground):
+        low, high = min(low, float(ground.min())), max(high, float(ground.max()))
     room = max(0.04 * (high - low), 0.003 * length)
     low, high = low - room, high + room
     scale = scale_for(length, DRAWING)
     start, end = ((float(x), float(y)) for x, y in (section.line[0], section.line[-1]))
     raised = exaggeration_for(high - low, scale, TALLEST)
     return SectionSheet(
-        section.name, start, end, length, low, high, scale, raised, bool(banded), grounded, picture
+        section.name, start, end, length, low, high, scale, raised, bool(banded), bool(len(ground)), picture
     )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from geofit.data.languages import EN, Language
 from geofit.data.prediction import Uncertainty
+from geofit.geometry.frame import FrameKind
 from geofit.report.plots import legend, map_axes
 from geofit.report.result import HorizonResult
 from geofit.report.style import FAIL, MUTED, TEXT
@@ -33,24 +34,29 @@ def uncertainty_map(axes: Axes, result: HorizonResult, t: Language = EN) -> None
     if found is None or found.uncertainty is None:
         raise ValueError(f"The standard deviation of horizon '{result.name}' was not examined.")
     _shades(axes, found.uncertainty, t)
-    turned = found.uncertainty.frame == "best-plane"
-    points = _flat(result, result.surface.points.xyz, turned)
+    frame = found.uncertainty.frame
+    points = _flat(result, result.surface.points.xyz, frame)
     axes.plot(*points.T, ".", ms=2.2, color=TEXT, alpha=0.6, label=t("data points"), zorder=3)
-    _places(axes, _flat(result, np.array([(s.x, s.y, s.z) for s in found.suggestions]).reshape(-1, 3), turned), t)
+    _places(axes, _flat(result, np.array([(s.x, s.y, s.z) for s in found.suggestions]).reshape(-1, 3), frame), t)
     axes.set_title(t("Standard deviation of the surface"))
-    if turned:
-        map_axes(axes, t("Along the strike, m"), t("Up the dip, m"))
-    else:
-        map_axes(axes, t("Easting, m"), t("Northing, m"))
+    along, up = {
+        "map": (t("Easting, m"), t("Northing, m")),
+        "best-plane": (t("Along the strike, m"), t("Up the dip, m")),
+        "sections": (t("Across the sections, m"), t("Along the sections, m")),
+    }[frame]
+    map_axes(axes, along, up)
     legend(axes)
 
 
-def _flat(result: HorizonResult, xyz: Floats, turned: bool) -> Floats:
-    """Return plan coordinates, or those in the best plane of a steep surface, (n, 2)."""
+def _flat(result: HorizonResult, xyz: Floats, frame: FrameKind) -> Floats:
+    """Return plan coordinates, those in the best plane of a steep surface, or a folded one's parameters, (n, 2)."""
     model = result.surface.model
-    if not turned or model is None:
+    if frame == "map" or model is None:
         return np.asarray(xyz[:, :2])
-    return model.problem.parametrization.frame.to_local(xyz)[:, :2]
+    if frame == "best-plane":
+        return model.problem.parametrization.frame.to_local(xyz)[:, :2]
+    foot = result.surface.project(xyz)
+    return np.column_stack([foot.u, foot.v])
 
 
 def _shades(axes: Axes, field: Uncertainty, t: Language) -> None:

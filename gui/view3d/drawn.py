@@ -11,7 +11,7 @@ from geofit.data.prediction import Uncertainty
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.view3d.shape import Shape, sd_at, sd_direction, shape_of, split
+from geofit.gui.view3d.shape import Shape, sd_at, shape_of, split
 from geofit.gui.view3d.sight import Sight
 from geofit.prediction.bands import band, prediction_sd
 from geofit.site.support import support_of
@@ -65,8 +65,8 @@ def drawn_of(
     if uncertainty is None:
         return Drawn(shape, supported=held, sight=sight)
     if surface.model is None:
-        fine, few = (sd_at(surface, uncertainty, one.xyz) for one in (shape, coarse))
-        upper, lower = (_lifted(surface, uncertainty, shape, fine, few, sign) for sign in (BAND, -BAND))
+        fine, few = (sd_at(uncertainty, one.xyz) for one in (shape, coarse))
+        upper, lower = (_lifted(shape, fine, few, sign) for sign in (BAND, -BAND))
     else:
         fine, few = (prediction_sd(surface, uncertainty, one.xyz) for one in (shape, coarse))
         upper, lower = (shape_of(bound) for bound in band(surface, uncertainty))
@@ -80,10 +80,8 @@ def _supported(surface: HorizonFit, ground: Ground | None, shape: Shape) -> Bool
     return support_of(surface.points.xyz, ground).within(shape.xyz[shape.triangles].mean(axis=1))
 
 
-def _lifted(
-    surface: HorizonFit, uncertainty: Uncertainty, shape: Shape, fine: Floats, few: Floats, sign: float
-) -> Shape:
-    way = sign * sd_direction(surface, uncertainty)
+def _lifted(shape: Shape, fine: Floats, few: Floats, sign: float) -> Shape:
+    way = np.array([0.0, 0.0, sign])
     moved = shape.lifted(fine, way)
     coarse = (shape.coarse or shape).lifted(few, way)
     return Shape(moved.xyz, moved.triangles, moved.normals, coarse)

@@ -20,7 +20,7 @@ from geofit.report.view import trimmed
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 
-__all__ = ["Shape", "next_below", "sd_at", "sd_direction", "seam_lines", "shape_of", "split", "thinned", "too_coarse"]
+__all__ = ["Shape", "next_below", "sd_at", "seam_lines", "shape_of", "split", "thinned", "too_coarse"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -198,22 +198,11 @@ def _triangle_normals(mesh: Mesh) -> Floats:
     return np.asarray(total / np.where(length > 0, length, np.nan))
 
 
-def sd_at(surface: HorizonFit, uncertainty: Uncertainty, xyz: Floats) -> Floats:
-    """Return the standard deviation at places of a surface, bilinear between the grid's nodes, nan outside."""
-    grid = Ground(uncertainty.x, uncertainty.y, uncertainty.sd)
-    if uncertainty.frame == "map":
-        return grid.elevation(xyz[:, 0], xyz[:, 1])
-    if surface.model is None:
+def sd_at(uncertainty: Uncertainty, xyz: Floats) -> Floats:
+    """Return the standard deviation at places, bilinear between the nodes of a grid over the map, nan outside."""
+    if uncertainty.frame != "map":
         return np.full(len(xyz), np.nan)
-    local = surface.model.problem.parametrization.frame.to_local(xyz)
-    return grid.elevation(local[:, 0], local[:, 1])
-
-
-def sd_direction(surface: HorizonFit, uncertainty: Uncertainty) -> Floats:
-    """Return the unit vector along which the standard deviation is measured: upwards, or across the best plane."""
-    if uncertainty.frame == "map" or surface.model is None:
-        return np.array([0.0, 0.0, 1.0])
-    return np.asarray(surface.model.problem.parametrization.frame.axes[2])
+    return Ground(uncertainty.x, uncertainty.y, uncertainty.sd).elevation(xyz[:, 0], xyz[:, 1])
 
 
 def next_below(surface: HorizonFit, shape: Shape, others: Sequence[HorizonFit]) -> HorizonFit | None:

@@ -179,13 +179,17 @@ def test_the_truth_lies_inside_the_band_of_seeded_sites():
 
 
 def test_an_overturned_fold_leaves_out_its_sections_by_new_fits():
-    found = sample("M1")[1]
+    surface, found = sample("M1")
     (sections,) = found.left_out
     assert sections.scheme == "section"
     assert sections.groups >= 5
     assert 0 < sections.rms < 10
-    assert found.uncertainty is None
-    assert with_code(found.notes, "prediction.folded-without-standard-deviation")
+    assert found.uncertainty is not None
+    assert found.uncertainty.frame == "sections"
+    assert found.uncertainty.factors[np.isfinite(found.uncertainty.factors)].min() >= 1.0
+    grid = grid_over(surface)
+    off = horizon_truth("M1").offset(grid.places(surface.model))
+    assert np.mean(np.abs(off) <= BAND * found.uncertainty.sd[grid.within]) >= 0.9
 
 
 def test_nothing_is_said_of_an_imported_surface():

@@ -11,7 +11,7 @@ import pytest
 from results import examined, horizon
 
 from geofit.data.languages import EN, ZH
-from geofit.data.site import Ground, Section
+from geofit.data.site import Ground, Section, Site
 from geofit.data.title_block import Revision, TitleBlock
 from geofit.report import fonts
 from geofit.report.chapters import document
@@ -23,6 +23,7 @@ from geofit.report.pdf import write_pdf
 from geofit.report.pdf_table import FEWEST, LaidTable, page_ends
 from geofit.report.pictures import draw_pictures, draw_sections, draw_site
 from geofit.report.profile import along_polyline, profiles, report_sections
+from geofit.report.section_sheet import section_sheet
 
 pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
 Image = pytest.importorskip("PIL.Image", reason="Pillow comes with fpdf2")
@@ -217,3 +218,11 @@ def test_each_language_has_its_usual_signatures_and_punctuation(report, images, 
     page = re.sub(r"<style>.*?</style>", "", (tmp_path / "r.html").read_text(encoding="utf-8"), flags=re.S)
     text = re.sub(r"<[^>]+>|base64,[^\"]+", "\n", page)
     assert not re.findall(r"[\u4e00-\u9fff] ?[,;:](?= |[\u4e00-\u9fff])", text)
+
+
+def test_a_section_that_cuts_no_horizon_is_as_high_as_its_ground():
+    ground = Ground(np.array([0.0, 200.0]), np.array([0.0, 200.0]), np.array([[1480.0, 1500.0], [1490.0, 1510.0]]))
+    section = Section("L", np.array([[10.0, 10.0], [190.0, 190.0]]))
+    sheet = section_sheet(section, Site("dam", {}, ground=ground), {}, "section-L")
+    assert sheet.low > 1470
+    assert sheet.high < 1520
