@@ -15,6 +15,7 @@ from geofit.checks.selfcross import self_crossing
 from geofit.checks.shape import shape_checks
 from geofit.checks.trend import trend
 from geofit.data.accuracy import Accuracy, Check, Conflict, Exceedance, Group, Seam
+from geofit.data.allowance import allowance
 from geofit.data.guard import guarded
 from geofit.data.labels import Labels
 from geofit.data.long_arrays import blocks, left_rows
@@ -256,8 +257,17 @@ def _tolerance_checks(surface: FittedSurface, d: Floats, exact: NDArray[np.bool_
                 "{count} of {total} approximated points beyond the interior tolerance",
                 **figures,
             )
-        explained = figures["count"] > 0 and tolerance < worst <= surface.diagnostics.get("noise_limit", tolerance)
-        if explained:
+        limit = surface.diagnostics.get("noise_limit", tolerance)
+        noisy = figures["count"] > 0 and tolerance < worst <= limit
+        allowed = allowance(surface.points.accuracy[loose], tolerance, limit)
+        stated = figures["count"] > 0 and not noisy and bool((np.abs(apart) <= allowed).all())
+        if stated:
+            text = message(
+                "checks.beyond-tolerance-as-stated",
+                "{count} of {total} points beyond the interior tolerance, as their stated accuracy predicts",
+                **figures,
+            )
+        if noisy:
             noise = float(surface.diagnostics["noise"])
             text = message(
                 "checks.approximated-beyond-tolerance-as-noise",
@@ -266,7 +276,8 @@ def _tolerance_checks(surface: FittedSurface, d: Floats, exact: NDArray[np.bool_
                 noise=noise,
                 **figures,
             )
-        checks.append(Check("interior tolerance", figures["count"] == 0 or explained, worst, tolerance, "m", text))
+        within = figures["count"] == 0 or noisy or stated
+        checks.append(Check("interior tolerance", within, worst, tolerance, "m", text))
     return checks
 
 

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from geofit.data.long_arrays import LongArray, Rows, blocks, everywhere, without
 from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
 from geofit.fitting.density import CLOUD
-from geofit.fitting.field import plane_trend
+from geofit.fitting.field import plane_trend, relative_noise
 from geofit.fitting.likelihood import plane_coefficients
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.slopes import Slopes
@@ -27,12 +28,14 @@ Rectangle = tuple[float, float, float, float]
 class Data:
     """The points that the fit honours, and measured slopes, in units, about the points' trend.
 
-    The places of a cloud are made when read.
+    ``accuracy`` is as stated, metres, nan where it is not; ``noise`` is relative
+    (:func:`geofit.fitting.field.relative_noise`). The places of a cloud are made when read.
     """
 
     plane: Rows
     value: Rows
     accuracy: Floats
+    noise: Floats
     area: Rectangle
     unit: float
     trend: Floats
@@ -50,6 +53,7 @@ class Data:
 def gather_points(
     points: PointSet,
     parametrization: Parametrization,
+    settings: FitSettings,
     kept: NDArray[np.bool_],
     split: Split | None,
     slopes: Slopes | None = None,
@@ -70,8 +74,9 @@ def gather_points(
         np.subtract(heights, trend[0] + places @ trend[1:], out=rest)
     known = np.isfinite(points.accuracy).any()
     accuracy = points.accuracy[kept] if known else everywhere(np.nan, len(plane))
+    noise = relative_noise(accuracy, settings.interior_tolerance)
     turned = None if slopes is None else slopes.in_units(unit, trend)
-    return Data(plane, about, accuracy, scaled, unit, trend, turned)
+    return Data(plane, about, accuracy, noise, scaled, unit, trend, turned)
 
 
 def _active_rows(parametrization: Parametrization, kept: NDArray[np.bool_], unit: float) -> tuple[Rows, Rows]:

@@ -24,8 +24,14 @@ SHARE = 0.7
 
 
 def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
-    """Adjust locally until sigma is below epsilon or no step helps, and say which."""
+    """Adjust locally until sigma is below epsilon or no step helps, and say which.
+
+    Points that are stated to be less accurate than the tolerance are not chased.
+    """
     given = model.problem
+    movable = given.kept & ~surface.core
+    if not given.settings.strict:
+        movable &= ~(given.points.accuracy > given.settings.interior_tolerance)
     for step in range(given.settings.max_iterations + 1):
         accuracy = surface.accuracy
         assert accuracy is not None
@@ -47,7 +53,7 @@ def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
             )
             surface = _with_note(surface, words.with_severity("warning"))
             break
-        better = pull_to_worst(model.net, given.parametrization, given.kept & ~surface.core, accuracy.residuals)
+        better = pull_to_worst(model.net, given.parametrization, movable, accuracy.residuals)
         tried = None if better is None or step == given.settings.max_iterations else model.with_net(better)
         candidate = None if tried is None else fit_of(tried)
         if candidate is None or candidate.accuracy is None or candidate.accuracy.sigma > 0.99 * accuracy.sigma:

@@ -59,8 +59,8 @@ def approximate(
     frozen: NDArray[np.bool_],
     plane: Floats,
     height: Floats,
-    tolerance: float,
-    limit: float,
+    tolerance: float | Floats,
+    limit: float | Floats,
     rounds: int,
     strict: bool = False,
 ) -> Approximation:
@@ -81,27 +81,29 @@ def approximate(
         Places of the peripheral points.
     height : (m,) or (m, k) array
         Their heights (or coordinates), metres.
-    tolerance : float
-        How far from the surface a point may lie, metres.
-    limit : float
-        How far beyond it must lie to be corrected at all: the tolerance, or more where the points' noise explains it.
+    tolerance : float or (m,) array
+        How far from the surface a point that is corrected may lie, metres.
+    limit : float or (m,) array
+        How far away it must lie to be corrected at all: the tolerance, or more where its noise explains it.
     rounds : int
         Cap of the number of rounds; with none, points outside the tolerance stay there.
     strict : bool
         Whether no point is let go.
     """
     matrix = space.matrix(plane)
+    tolerance, limit = (np.broadcast_to(one, len(plane)) for one in (tolerance, limit))
     best = start
     misfit = height - matrix @ best
     first = _size(misfit)
     held, released = (np.zeros(len(plane), bool) for _ in range(2))
     done = 0
-    while done < rounds and (_size(misfit)[~released] > limit).any():
+    while done < rounds and (_size(misfit) > limit)[~released].any():
         done += 1
         held |= (_size(misfit) > limit) & ~released
         # Points that are corrected once stay at the rim of their tolerance while their neighbours are corrected.
         length = _size(misfit[held])
-        share = (1 - RIM * tolerance / np.maximum(length, RIM * tolerance)).reshape(-1, *[1] * (misfit.ndim - 1))
+        rim = RIM * tolerance[held]
+        share = (1 - rim / np.maximum(length, rim)).reshape(-1, *[1] * (misfit.ndim - 1))
         corrected = best + regularized_correction(csr_array(matrix[held]), share * misfit[held], ~frozen)
         swinging = np.zeros(len(plane), bool) if strict else _swinging(matrix, corrected - start, first, held)
         if swinging.any():
@@ -109,7 +111,7 @@ def approximate(
             best, misfit, held = start, height - matrix @ start, np.zeros(len(plane), bool)
             continue
         after = height - matrix @ corrected
-        before, left = (np.maximum(_size(one)[~released] - limit, 0).sum() for one in (misfit, after))
+        before, left = (np.maximum(_size(one) - limit, 0)[~released].sum() for one in (misfit, after))
         if left >= 0.98 * before:
             break
         best, misfit = corrected, after

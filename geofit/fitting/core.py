@@ -123,7 +123,7 @@ def fit_with_core(
         If no control net within the cap passes through them without swinging between them.
     """
     assert split.core is not None
-    data = gather_points(points, parametrization, kept, split, slopes).whole()
+    data = gather_points(points, parametrization, settings, kept, split, slopes).whole()
     inside = split.inside[kept]
     scaled = [x / data.unit for x in split.core]
     core = (scaled[0], scaled[1], scaled[2], scaled[3])

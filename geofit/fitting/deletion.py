@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse import csr_array
 
+from geofit.data.allowance import allowance
 from geofit.fitting.approximate import RIM
 from geofit.fitting.model import Model
 from geofit.fitting.posterior import Posterior
@@ -171,7 +172,11 @@ def _pulled(given: Posterior, model: Model, before: Floats) -> NDArray[np.bool_]
     net = model.net
     over = np.column_stack([np.ones(len(given.plane)), given.plane]) @ given.trend
     left = np.abs(given.value + over - net.space.matrix(given.plane) @ net.coefficients)
-    return np.asarray((np.abs(before) > net.limit) & ((left <= net.limit) | (left < LET_GO * np.abs(before))))
+    points, settings = model.problem.points, model.problem.settings
+    limit = np.full(len(left), net.limit)
+    if not settings.strict:
+        limit = allowance(points.accuracy[given.kept], settings.interior_tolerance, net.limit)
+    return np.asarray((np.abs(before) > limit) & ((left <= limit) | (left < LET_GO * np.abs(before))))
 
 
 def _correction(matrix: csr_array, points: Ints, free: Floats, damping: float, slack: float) -> Correction:

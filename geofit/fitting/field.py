@@ -147,14 +147,18 @@ def plane_trend(plane: Rows, z: Rows, weight: Floats) -> Floats:
     return solution.reshape(3, *z.shape[1:])
 
 
-def relative_noise(accuracy: Floats) -> Floats:
-    """Return each point's noise against that of the median stated accuracy; 1 where none is stated."""
+def relative_noise(accuracy: Floats, tolerance: float = math.inf) -> Floats:
+    """Return each point's noise against that of the median stated accuracy.
+
+    Points of no stated accuracy are to be met within the tolerance: they count as that accurate, or as the median.
+    """
     stated = np.isfinite(accuracy if accuracy.strides != (0,) else accuracy[:1])
     if not stated.any():
         return everywhere(1.0, len(accuracy))
-    ratio = np.ones(len(accuracy))
-    ratio[stated] = np.clip(accuracy[stated] / float(np.median(accuracy[stated])), 0.1, 10.0)
-    return ratio
+    median = float(np.median(accuracy[stated]))
+    ratio = np.full(len(accuracy), min(tolerance / median, 1.0))
+    ratio[stated] = accuracy[stated] / median
+    return np.asarray(np.clip(ratio, 0.1, 10.0))
 
 
 def precision_band(space: TensorSpace, field: FieldChoice) -> Floats:

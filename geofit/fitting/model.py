@@ -54,7 +54,7 @@ class Problem:
     def fit(self, active: NDArray[np.bool_], stage: Callable[[str, float], None]) -> Model:
         """Return the control net that meets the core's points and approximates the other active ones."""
         if self.split.core is None:
-            given = gather_points(self.points, self.parametrization, active, None, self.slopes)
+            given = gather_points(self.points, self.parametrization, self.settings, active, None, self.slopes)
             return Model(self, approximate_all(given, self.settings, stage))
         return Model(
             self,

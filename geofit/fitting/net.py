@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtri
 
+from geofit.data.allowance import allowance, largest_noise
 from geofit.data.long_arrays import Rows, blocks, inverse_squares
 from geofit.data.messages import Message, message
 from geofit.data.settings import FitSettings
@@ -26,7 +26,6 @@ from geofit.fitting.field import (
     FieldChoice,
     Smoothed,
     precision_band,
-    relative_noise,
     smooth,
 )
 from geofit.fitting.likelihood import plane_coefficients
@@ -56,8 +55,6 @@ FINEST = 0.05
 BENT = 3.0
 #: Where points scatter by this share of their noise about the field, they are so many that it shows.
 SHOWN = 0.8
-#: Noise explains the misfits beyond which it predicts fewer points than this.
-UNLIKELY = 0.5
 #: Places whose rows are held at a time.
 PART = 50_000
 #: Control points a data point, and their bounds.
@@ -104,7 +101,7 @@ def in_patches(shape: tuple[int, int], core: Rectangle | None, space: TensorSpac
 
 def smoothed(data: Data, space: TensorSpace, field: FieldChoice) -> Smoothed:
     """Return a chosen field on a space."""
-    weight = inverse_squares(relative_noise(data.accuracy))
+    weight = inverse_squares(data.noise)
     return smooth(space, field, data.plane, data.value, weight, data.trend, data.slopes)
 
 
@@ -162,23 +159,25 @@ class Periphery:
         plane, value = data.plane[:][self.outer], data.value[:][self.outer]
         misfit = _misfit(space, coefficients, plane, value)
         limit = self._limit(misfit)
+        allowed = self._allowed(limit)
         rounds = self.settings.max_iterations if chased else 0
-        if chased and (misfit > limit).any():
-            space, coefficients = self._narrowed(space, coefficients, plane[misfit > limit])
+        if chased and (misfit > allowed).any():
+            space, coefficients = self._narrowed(space, coefficients, plane[misfit > allowed])
         total, field = 0, coefficients
-        if not chased or not (misfit > limit).any():
-            beyond = np.where(misfit > tolerance, misfit, 0.0)
-            return PeripheryFit(space, coefficients, self._frozen(space), 0, limit, self._notes(beyond, limit))
+        if not chased or not (misfit > allowed).any():
+            notes = self._notes(self._beyond(misfit, allowed, limit), limit)
+            return PeripheryFit(space, coefficients, self._frozen(space), 0, limit, notes)
         while True:
             frozen = self._frozen(space)
-            result = approximate(space, field, frozen, plane, value, tolerance, limit, rounds, self.settings.strict)
+            met = np.where(allowed > limit, allowed, tolerance)
+            result = approximate(space, field, frozen, plane, value, met, allowed, rounds, self.settings.strict)
             total += result.rounds
-            excess = np.where(result.misfit > limit, result.misfit, 0.0)
+            excess = np.where(result.misfit > allowed, result.misfit, 0.0)
             at_u, at_v = self._new_knots(space, plane, excess) if chased else ({}, {})
             if not at_u and not at_v:
                 break
             space, field = multiply_knots(space, field, at_u, at_v)
-        beyond = np.where(result.misfit > tolerance, result.misfit, 0.0)
+        beyond = self._beyond(result.misfit, allowed, limit)
         notes = self._notes(beyond, limit, bool((result.released & (beyond > 0)).any()))
         return PeripheryFit(space, result.coefficients, frozen, total, limit, notes)
 
@@ -208,7 +207,7 @@ class Periphery:
         plane = data.plane[:][self.outer]
         rest = data.value[:][self.outer] - np.column_stack([np.ones(len(plane)), plane]) @ start.plane
         frozen = self._frozen(space)
-        weight = 1 / relative_noise(data.accuracy)[self.outer] ** 2
+        weight = 1 / data.noise[self.outer] ** 2
         # The spans next to a core are of any length, which a form applied twice does not bear.
         energy = precision_band(space, self.field.at_most(space.degree))
         return over + solved_beside(space, energy, start.coefficients - over, frozen, plane, rest, weight)
@@ -223,7 +222,22 @@ class Periphery:
         shown = float(np.sqrt(misfit @ misfit / max(len(misfit), 1))) > SHOWN * noise
         if self.settings.strict or not shown or noise > BENT * tolerance or len(misfit) < ENOUGH:
             return tolerance
-        return max(tolerance, noise * float(ndtri(1 - UNLIKELY / (2 * len(misfit)))))
+        return max(tolerance, noise * largest_noise(len(misfit)))
+
+    def _allowed(self, limit: float) -> Floats:
+        """Return how far each point may lie from the field: as far as its stated accuracy explains, where that is more.
+
+        With ``strict`` every point is met all the same.
+        """
+        accuracy = self.data.accuracy[self.outer]
+        if self.settings.strict:
+            return np.full(len(accuracy), limit)
+        return allowance(accuracy, self.settings.interior_tolerance, limit)
+
+    def _beyond(self, misfit: Floats, allowed: Floats, limit: float) -> Floats:
+        """Return the misfits beyond the tolerance that no stated accuracy explains, 0 for all others."""
+        explained = (allowed > limit) & (misfit <= allowed)
+        return np.where((misfit > self.settings.interior_tolerance) & ~explained, misfit, 0.0)
 
     def _narrowed(self, space: TensorSpace, coefficients: Floats, corrected: Floats) -> tuple[TensorSpace, Floats]:
         """Shorten the spans around the points to pull, as far as the cap allows."""
@@ -272,8 +286,24 @@ class Periphery:
 
     def _notes(self, beyond: Floats, limit: float, released: bool = False) -> tuple[Message, ...]:
         if limit > self.settings.interior_tolerance and not (beyond > limit).any():
-            return self._noise_notes(beyond)
-        return (*self._bent_notes(), *self._excess_notes(beyond, released))
+            return (*self._coarse_notes(), *self._noise_notes(beyond))
+        return (*self._coarse_notes(), *self._bent_notes(), *self._excess_notes(beyond, released))
+
+    def _coarse_notes(self) -> tuple[Message, ...]:
+        """Count the points that are held to their own accuracy only."""
+        accuracy = self.data.accuracy[self.outer]
+        coarse = accuracy[accuracy > self.settings.interior_tolerance]
+        if not len(coarse) or self.settings.strict:
+            return ()
+        note = message(
+            "fitting.points-less-accurate",
+            "{count} points are stated to be less accurate than the interior tolerance of {tolerance:g} m, the least "
+            "to {accuracy:g} m; the surface follows them as far as that, and they count in sigma like all others",
+            count=len(coarse),
+            tolerance=self.settings.interior_tolerance,
+            accuracy=float(coarse.max()),
+        )
+        return (note,)
 
     def _noise_notes(self, beyond: Floats) -> tuple[Message, ...]:
         """Count the points that lie beyond the tolerance because their own noise puts them there."""

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from geofit.fitting.active_points import gather_points
-from geofit.fitting.field import FieldChoice, planes_of, relative_noise, slope_of, widened_space
+from geofit.fitting.field import FieldChoice, planes_of, slope_of, widened_space
 from geofit.fitting.model import Model
 from geofit.fitting.resolution import even_space
 from geofit.splines.blocks import BlockFactor, InverseBlocks
@@ -156,14 +156,14 @@ def posterior(model: Model) -> Posterior:
     # The points between the sections of a folded surface have found their places by now.
     kept = given.kept if given.parametrization.parametric else given.kept & given.parametrization.parametrized
     split = given.split if given.split.core is not None else None
-    data = gather_points(given.points, given.parametrization, kept, split, given.slopes).whole()
+    data = gather_points(given.points, given.parametrization, given.settings, kept, split, given.slopes).whole()
     space = net.base if net.base.size <= LARGEST else even_space(data.area, _SPAN, net.base.degree, LARGEST)
     space, field = widened_space(space), net.field
     turned = space.shape[1] > space.shape[0]
     if turned:
         space, field = space.turned, field.turned
     plane, trend = (data.plane[:, ::-1], data.trend[[0, 2, 1]]) if turned else (data.plane, data.trend)
-    weight = 1 / relative_noise(data.accuracy) ** 2
+    weight = 1 / data.noise**2
     band, right = space.normal_equations(plane, data.value, weight)
     measured, weighed = data.slopes.turned if turned and data.slopes is not None else data.slopes, 0.0
     if measured is not None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
-from geofit.fitting.field import FieldChoice, choose_covariance, relative_noise
+from geofit.fitting.field import FieldChoice, choose_covariance
 from geofit.fitting.likelihood import BEHIND
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
@@ -70,7 +70,7 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldCho
     noise on the first level. Its spans are lengthened while the likelihood gains by it; where it gains nothing, they
     are shortened, down to those that points in groups resolve.
     """
-    degree, noise = degree_for(len(data.plane)), relative_noise(data.accuracy)
+    degree, noise = degree_for(len(data.plane)), data.noise
     given = None if settings.smoothing == "auto" else float(settings.smoothing)
     limit = min(most, LAST_LEVEL)
     space, sketch = (even_space(data.area, EVEN, degree, size) for size in (min(FIRST_LEVEL, limit), SKETCH))

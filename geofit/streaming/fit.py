@@ -249,4 +249,4 @@ def _gather(local: LongArray, frame: Frame, boundary: Floats | None) -> Data:
     value = LongArray((n,), read)
     scaled = (area[0] / unit, area[1] / unit, area[2] / unit, area[3] / unit)
     unknown = everywhere(math.nan, n)
-    return Data(plane, value, unknown, scaled, unit, trend)
+    return Data(plane, value, unknown, everywhere(1.0, n), scaled, unit, trend)
