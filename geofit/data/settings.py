@@ -25,7 +25,8 @@ class FitSettings:
     epsilon : float
         Control error in metres: the fit passes when sigma (eq. 3) is below it.
     interior_tolerance : float
-        Largest distance in metres at which a peripheral point may lie from the surface (paper, sec. 3.2).
+        Largest distance in metres at which a peripheral point may lie from the surface (paper, sec. 3.2); one of a
+        coarser stated accuracy as far as that explains.
     boundary_tolerance : float
         Largest distance in metres between the edges of neighbouring patches (paper, sec. 3.2). The patches
         share their edge control points, so the gap is zero up to the STEP file's digits.

@@ -66,7 +66,7 @@ def section_lines(plane: Floats, section: NDArray[np.str_], spacing: float) -> L
     """Find the lines of constant u that the core's sections run along.
 
     Named sections give their mean u. Sections that stray by more than a tenth of ``spacing`` are not straight:
-    their points are active all the same, but no knot line follows them.
+    their points are active all the same, but no knot line follows them. Of sections that all but coincide, one counts.
     """
     named = np.unique(section[section != ""])
     means, strays = [], []
@@ -80,8 +80,12 @@ def section_lines(plane: Floats, section: NDArray[np.str_], spacing: float) -> L
     order = np.argsort(means, kind="stable")
     lines, stray = np.array(means)[order], np.array(strays)[order]
     lines, stray = lines[stray < 0.1 * spacing], stray[stray < 0.1 * spacing]
-    keep = np.concatenate([[True], np.diff(lines) > 0.05 * spacing]) if len(lines) else np.empty(0, bool)
-    return Lines(lines[keep], stray[keep], len(lines) >= 2)
+    if len(lines) < 2:
+        return Lines(lines, stray, False)
+    # Many sections stand closer together than a share of the whole core.
+    least = min(0.05 * spacing, 0.5 * float(lines[-1] - lines[0]) / (len(lines) - 1))
+    keep = np.concatenate([[True], np.diff(lines) > least])
+    return Lines(lines[keep], stray[keep], int(keep.sum()) >= 2)
 
 
 def minimum_norm_correction(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_] | None = None) -> Floats:

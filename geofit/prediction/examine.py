@@ -169,9 +169,18 @@ def _examine_folded(surface: HorizonFit, model: Model, progress: Progress | None
     plane = model.problem.parametrization.plane / model.net.unit
     nothing = LeftOutPoints(*(np.empty(0, kind) for kind in (int, float, float, float)))
     expected = PredictionError(model, given, uncalibrated())
-    # Widened until it holds the sections left out too, as that of a height field holds the holes.
-    near = in_half_the_gap(left, expected)
-    calibration = calibrate(plane, near, nothing, left, grid.plane, expected.variance(grid.plane))
+    calibration = uncalibrated()
+    if len(left.point):
+        # Widened until it holds the sections left out too, as that of a height field holds the holes.
+        near = in_half_the_gap(left, expected)
+        calibration = calibrate(plane, near, nothing, left, grid.plane, expected.variance(grid.plane))
+    else:
+        notes.append(
+            message(
+                "prediction.fold-not-calibrated",
+                "no section was left out: the standard deviation is what the fit expects, held to no error",
+            )
+        )
     tell(progress, "next holes", 0.95)
     suggestions, uncertainty = _between(grid, PredictionError(model, given, calibration), notes)
     results = (_by_sections(model, left, calibration.at(plane)[left.point]),) if len(left.point) else ()

@@ -214,6 +214,29 @@ def test_section_lines_are_the_mean_u_of_straight_sections():
     np.testing.assert_allclose(lines.u, [1, 2, 4])
 
 
+def test_many_sections_are_as_many_lines_and_those_that_coincide_are_one():
+    u = np.append(np.linspace(0, 27, 60), [9.0, 9.01])
+    plane = np.column_stack([np.repeat(u, 4), np.tile(np.linspace(0, 10, 4), len(u))])
+    lines = section_lines(plane, np.repeat([f"S{k:02d}" for k in range(len(u))], 4), 13.5)
+    assert lines.straight
+    assert len(lines.u) == 60
+
+
+def test_forty_five_sections_are_met():
+    rng = np.random.default_rng(45)
+    x = np.repeat(np.linspace(0, 1600, 45), 12)
+    y = np.sort(rng.uniform(0, 1000, (45, 12)), axis=1).ravel()
+    z = 500 + 20 * np.sin(x / 150) * np.cos(y / 130)
+    names = np.repeat([f"S{k:02d}" for k in range(45)], 12)
+    points = PointSet(np.column_stack([x + EASTING, y + NORTHING, z]), section=names, kind="section")
+    surface = fit_horizon(points, FitSettings(core="all"))
+    assert np.abs(surface.distance(points.xyz)).max() < 1e-6
+    between = rng.uniform((20, 50), (1580, 950), (2000, 2))
+    truth = 500 + 20 * np.sin(between[:, 0] / 150) * np.cos(between[:, 1] / 130)
+    found = surface.elevation(between[:, 0] + EASTING, between[:, 1] + NORTHING)
+    assert np.sqrt(np.mean((found - truth) ** 2)) < 0.3
+
+
 def test_a_section_that_strays_gets_no_line():
     v = np.linspace(0, 10, 8)
     plane = np.concatenate(

@@ -7,7 +7,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from refusals import refused
+from refusals import refused, with_code
+from truth import folded
 
 from geofit import PointSet, examine, fit_horizon
 from geofit.data.errors import FitError
@@ -115,6 +116,15 @@ def test_the_next_holes_of_a_fold_lie_on_it_where_it_is_least_known():
         [one.sd for one in found.suggestions], rel=1e-6
     )
     assert (np.diff([found.uncertainty.mean, *(one.mean_after for one in found.suggestions)]) < 0).all()
+
+
+def test_a_fold_of_two_sections_has_the_standard_deviation_that_the_fit_expects():
+    surface = fit_horizon(folded(2, 20))
+    found = examine(surface)
+    assert found.left_out == ()
+    assert with_code(found.notes, "prediction.fold-not-calibrated")
+    assert found.uncertainty.factor == 1.0
+    assert 0 < found.uncertainty.mean < found.uncertainty.max
 
 
 def test_a_fold_has_no_standard_deviation_at_a_place_of_the_map():
