@@ -57,15 +57,19 @@ def gather_points(
     kept: NDArray[np.bool_],
     split: Split | None,
     slopes: Slopes | None = None,
+    unit: float | None = None,
 ) -> Data:
-    """Return the points that the fit honours, in units of the spacing of the sparse ones, about their trend."""
+    """Return the points that the fit honours, in units of the spacing of the sparse ones, about their trend.
+
+    ``unit`` is that of a fit that stands already: which points count as its core may have changed since.
+    """
     area = parametrization.area
     size, n = (area[1] - area[0]) * (area[3] - area[2]), int(kept.sum())
     sparse = int((~split.inside & kept).sum()) if split is not None else 0
     if split is not None and split.core is not None and sparse >= 10:
         c = split.core
         size, n = size - (c[1] - c[0]) * (c[3] - c[2]), sparse
-    unit = float(np.sqrt(size / n))
+    unit = float(np.sqrt(size / n)) if unit is None else unit
     plane, value = _active_rows(parametrization, kept, unit)
     trend = plane_trend(plane, value, everywhere(1.0, len(plane)))
     scaled = (area[0] / unit, area[1] / unit, area[2] / unit, area[3] / unit)

@@ -155,8 +155,9 @@ def posterior(model: Model) -> Posterior:
     given, net = model.problem, model.net
     # The points between the sections of a folded surface have found their places by now.
     kept = given.kept if given.parametrization.parametric else given.kept & given.parametrization.parametrized
-    split = given.split if given.split.core is not None else None
-    data = gather_points(given.points, given.parametrization, given.settings, kept, split, given.slopes).whole()
+    data = gather_points(
+        given.points, given.parametrization, given.settings, kept, None, given.slopes, net.unit
+    ).whole()
     space = net.base if net.base.size <= LARGEST else even_space(data.area, _SPAN, net.base.degree, LARGEST)
     space, field = widened_space(space), net.field
     turned = space.shape[1] > space.shape[0]

@@ -83,7 +83,7 @@ def section_lines(plane: Floats, section: NDArray[np.str_], spacing: float) -> L
     if len(lines) < 2:
         return Lines(lines, stray, False)
     # Many sections stand closer together than a share of the whole core.
-    least = min(0.05 * spacing, 0.5 * float(lines[-1] - lines[0]) / (len(lines) - 1))
+    least = min(0.05 * spacing, max(0.5 * float(lines[-1] - lines[0]) / (len(lines) - 1), 1e-4 * spacing))
     keep = np.concatenate([[True], np.diff(lines) > least])
     return Lines(lines[keep], stray[keep], int(keep.sum()) >= 2)
 

@@ -252,3 +252,10 @@ def test_fewer_than_two_sections_are_no_lines(names):
     lines = section_lines(plane, np.array(names), 0.5)
     assert not lines.straight
     assert len(lines.u) == 0
+
+
+def test_sections_through_one_place_are_no_lines_beside_each_other():
+    plane = np.concatenate([np.outer(np.linspace(-1, 1, 8), [np.sin(a), np.cos(a)]) for a in (0.02, 0.3, 0.01)])
+    lines = section_lines(plane, np.repeat(["A", "B", "C"], 8), 1.0)
+    assert not lines.straight
+    assert len(lines.u) <= 1

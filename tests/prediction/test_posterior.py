@@ -9,7 +9,7 @@ import pytest
 from refusals import refused
 from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import splu
-from truth import Truth, paper_arrangement
+from truth import EASTING, NORTHING, Truth, paper_arrangement
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.errors import FitError, SettingsError
@@ -20,6 +20,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.posterior import Posterior, posterior
 from geofit.prediction.bands import PredictionError, band, grid_over, prediction_sd, uncertainty_on
 from geofit.prediction.drilling import greedy_holes, suggest_holes
+from geofit.prediction.examine import examine
 from geofit.splines import bspline
 from geofit.splines.blocks import BlockFactor
 from geofit.splines.matern import MaternPrecision
@@ -281,3 +282,19 @@ def test_points_without_a_model_or_a_height_have_no_posterior():
     surface = fit_horizon(PointSet(xyz))
     with pytest.raises(FitError):
         grid_over(surface.with_(model=None))
+
+
+def test_the_posterior_of_a_core_that_lost_points_has_the_unit_of_its_fit():
+    """On a circle no two neighbours agree: half of a core of all points is let go, the others are still its core."""
+    rng = np.random.default_rng(76)
+    t = rng.uniform(0, 2 * np.pi, 190)
+    plan = 4000 * np.column_stack([np.cos(t), np.sin(t)]) + (EASTING, NORTHING)
+    points = PointSet(np.column_stack([plan, 300 + rng.normal(0, 80, 190)]))
+    surface = fit_horizon(points, FitSettings(core="all"))
+    assert 0 < surface.core.sum() < len(points) - 10
+    model = surface.model
+    given = posterior(model)
+    assert np.allclose(given.plane * model.net.unit, model.problem.parametrization.plane, rtol=0, atol=1e-9)
+    found = examine(surface)
+    assert not [note for note in found.notes if note.code == "prediction.error-not-found"]
+    assert found.uncertainty is not None
