@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
-__all__ = ["allowance", "largest_noise"]
+__all__ = ["allowance", "any_coarse", "largest_noise"]
 
 Floats = NDArray[np.float64]
 
@@ -17,6 +17,12 @@ UNLIKELY = 0.5
 def largest_noise(count: int) -> float:
     """Return the standard deviations beyond which normal noise puts half a point of so many."""
     return float(ndtri(1 - UNLIKELY / (2 * max(count, 1))))
+
+
+def any_coarse(accuracy: Floats, tolerance: float) -> bool:
+    """Tell whether any of (n,) stated accuracies is coarser than a tolerance; of a cloud that states none, at once."""
+    some = accuracy if accuracy.strides != (0,) else accuracy[:1]
+    return bool((some > tolerance).any())
 
 
 def allowance(accuracy: Floats, tolerance: float, limit: float) -> Floats:
@@ -32,7 +38,7 @@ def allowance(accuracy: Floats, tolerance: float, limit: float) -> Floats:
     limit : float
         What all other points are allowed: the tolerance, or more where their noise is known from the fit.
     """
-    coarse = accuracy > tolerance
-    if not coarse.any():
+    if not any_coarse(accuracy, tolerance):
         return np.full(len(accuracy), limit)
-    return np.where(coarse, np.maximum(limit, accuracy * largest_noise(len(accuracy))), limit)
+    explained = np.maximum(limit, accuracy * largest_noise(len(accuracy)))
+    return np.where(accuracy > tolerance, explained, limit)

@@ -29,9 +29,6 @@ def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
     Points that are stated to be less accurate than the tolerance are not chased.
     """
     given = model.problem
-    movable = given.kept & ~surface.core
-    if not given.settings.strict:
-        movable &= ~(given.points.accuracy > given.settings.interior_tolerance)
     for step in range(given.settings.max_iterations + 1):
         accuracy = surface.accuracy
         assert accuracy is not None
@@ -53,6 +50,9 @@ def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
             )
             surface = _with_note(surface, words.with_severity("warning"))
             break
+        movable = given.kept & ~surface.core
+        if not given.settings.strict:
+            movable &= ~(given.points.accuracy > given.settings.interior_tolerance)
         better = pull_to_worst(model.net, given.parametrization, movable, accuracy.residuals)
         tried = None if better is None or step == given.settings.max_iterations else model.with_net(better)
         candidate = None if tried is None else fit_of(tried)

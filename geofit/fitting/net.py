@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.allowance import allowance, largest_noise
+from geofit.data.allowance import allowance, any_coarse, largest_noise
 from geofit.data.long_arrays import Rows, blocks, inverse_squares
 from geofit.data.messages import Message, message
 from geofit.data.settings import FitSettings
@@ -291,9 +291,11 @@ class Periphery:
 
     def _coarse_notes(self) -> tuple[Message, ...]:
         """Count the points that are held to their own accuracy only."""
+        if self.settings.strict or not any_coarse(self.data.accuracy, self.settings.interior_tolerance):
+            return ()
         accuracy = self.data.accuracy[self.outer]
         coarse = accuracy[accuracy > self.settings.interior_tolerance]
-        if not len(coarse) or self.settings.strict:
+        if not len(coarse):
             return ()
         note = message(
             "fitting.points-less-accurate",

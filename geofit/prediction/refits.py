@@ -121,7 +121,7 @@ def in_half_the_gap(left: LeftOutPoints, error_model: PredictionError) -> LeftOu
     plane = model.problem.parametrization.plane / model.net.unit
     lines = np.array([np.median(plane[section, 0]) for section in _sections(model)])
     u, v = plane[left.point].T
-    own = np.abs(u[:, None] - lines).argmin(axis=1)
+    own = np.clip(np.abs(u[:, None] - lines).argmin(axis=1), 1, len(lines) - 2)
     sides = [error_model.variance(np.column_stack([(u + lines[own + step]) / 2, v])) for step in (-1, 1)]
     return replace(left, error=left.error / 2, variance=np.mean(sides, axis=0))
 
