@@ -15,7 +15,7 @@ from geofit.checks.selfcross import self_crossing
 from geofit.checks.shape import shape_checks
 from geofit.checks.trend import trend
 from geofit.data.accuracy import Accuracy, Check, Conflict, Exceedance, Group, Seam
-from geofit.data.allowance import allowance, any_coarse
+from geofit.data.allowance import accuracies, allowance, any_coarse
 from geofit.data.guard import guarded
 from geofit.data.labels import Labels
 from geofit.data.long_arrays import blocks, left_rows
@@ -259,13 +259,15 @@ def _tolerance_checks(surface: FittedSurface, d: Floats, exact: NDArray[np.bool_
             )
         limit = surface.diagnostics.get("noise_limit", tolerance)
         noisy = figures["count"] > 0 and tolerance < worst <= limit
-        stated = figures["count"] > 0 and not noisy and any_coarse(surface.points.accuracy, tolerance)
+        accuracy = accuracies(surface.points, surface.diagnostics.get("sources", {}))
+        stated = figures["count"] > 0 and not noisy and any_coarse(accuracy, tolerance)
         if stated:
-            stated = bool((np.abs(apart) <= allowance(surface.points.accuracy[loose], tolerance, limit)).all())
+            stated = bool((np.abs(apart) <= allowance(accuracy[loose], tolerance, limit)).all())
         if stated:
             text = message(
                 "checks.beyond-tolerance-as-stated",
-                "{count} of {total} points beyond the interior tolerance, as their stated accuracy predicts",
+                "{count} of {total} points beyond the interior tolerance, as their accuracy (stated, or found for "
+                "their kind) predicts",
                 **figures,
             )
         if noisy:

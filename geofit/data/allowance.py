@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
-__all__ = ["allowance", "any_coarse", "largest_noise"]
+from geofit.data.points import PointSet
+
+__all__ = ["accuracies", "allowance", "any_coarse", "largest_noise"]
 
 Floats = NDArray[np.float64]
 
@@ -17,6 +21,15 @@ UNLIKELY = 0.5
 def largest_noise(count: int) -> float:
     """Return the standard deviations beyond which normal noise puts half a point of so many."""
     return float(ndtri(1 - UNLIKELY / (2 * max(count, 1))))
+
+
+def accuracies(points: PointSet, sources: Mapping[str, float]) -> Floats:
+    """Return the accuracy (n,) of points as stated, or the noise that the fit found for their kind; else nan."""
+    if not sources:
+        return points.accuracy
+    kinds = points.labels["kind"]
+    found = np.array([sources.get(kind, np.nan) for kind in kinds.table])[kinds.codes]
+    return np.where(np.isnan(points.accuracy), found, points.accuracy)
 
 
 def any_coarse(accuracy: Floats, tolerance: float) -> bool:

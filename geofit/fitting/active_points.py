@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.long_arrays import LongArray, Rows, blocks, everywhere, without
-from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.density import CLOUD
 from geofit.fitting.field import plane_trend, relative_noise
@@ -28,7 +27,7 @@ Rectangle = tuple[float, float, float, float]
 class Data:
     """The points that the fit honours, and measured slopes, in units, about the points' trend.
 
-    ``accuracy`` is as stated, metres, nan where it is not; ``noise`` is relative
+    ``accuracy`` is as stated or found, metres, nan where it is not; ``noise`` is relative
     (:func:`geofit.fitting.field.relative_noise`). The places of a cloud are made when read.
     """
 
@@ -51,7 +50,7 @@ class Data:
 
 
 def gather_points(
-    points: PointSet,
+    accuracy: Floats,
     parametrization: Parametrization,
     settings: FitSettings,
     kept: NDArray[np.bool_],
@@ -61,7 +60,8 @@ def gather_points(
 ) -> Data:
     """Return the points that the fit honours, in units of the spacing of the sparse ones, about their trend.
 
-    ``unit`` is that of a fit that stands already: which points count as its core may have changed since.
+    ``accuracy`` is that of all points, metres (nan: none). ``unit`` is that of a fit that stands already: which points
+    count as its core may have changed since.
     """
     area = parametrization.area
     size, n = (area[1] - area[0]) * (area[3] - area[2]), int(kept.sum())
@@ -76,8 +76,7 @@ def gather_points(
     about = np.empty(value.shape)
     for rest, heights, places in blocks(about, value, plane):
         np.subtract(heights, trend[0] + places @ trend[1:], out=rest)
-    known = np.isfinite(points.accuracy).any()
-    accuracy = points.accuracy[kept] if known else everywhere(np.nan, len(plane))
+    accuracy = accuracy[kept] if np.isfinite(accuracy).any() else everywhere(np.nan, len(plane))
     noise = relative_noise(accuracy, settings.interior_tolerance)
     turned = None if slopes is None else slopes.in_units(unit, trend)
     return Data(plane, about, accuracy, noise, scaled, unit, trend, turned)

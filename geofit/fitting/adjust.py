@@ -52,7 +52,7 @@ def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
             break
         movable = given.kept & ~surface.core
         if not given.settings.strict:
-            movable &= ~(given.points.accuracy > given.settings.interior_tolerance)
+            movable &= ~(given.accuracy > given.settings.interior_tolerance)
         better = pull_to_worst(model.net, given.parametrization, movable, accuracy.residuals)
         tried = None if better is None or step == given.settings.max_iterations else model.with_net(better)
         candidate = None if tried is None else fit_of(tried)

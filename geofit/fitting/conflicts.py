@@ -7,10 +7,11 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from geofit.data.accuracy import Conflict
+from geofit.data.labels import Labels
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 
-__all__ = ["near_pairs", "resolve_conflicts"]
+__all__ = ["near_pairs", "resolve_conflicts", "trust_of"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -55,8 +56,7 @@ def resolve_conflicts(
         return kept, ()
     met = np.unique(pairs)
     accuracy = np.where(np.isnan(points.accuracy[met]), np.inf, points.accuracy[met])
-    kinds = points.labels["kind"][met]
-    trust = np.array([_TRUST.get(kind, 3) for kind in kinds.table])[kinds.codes]
+    trust = trust_of(points.labels["kind"][met])
     rank = np.empty(len(met), dtype=int)
     rank[np.lexsort((met, trust, accuracy))] = np.arange(len(met))
     own = rank[np.searchsorted(met, pairs)]
@@ -148,7 +148,7 @@ def _describe(points: PointSet, winner: int, loser: int, difference: float) -> C
         stated = np.nan_to_num(points.accuracy[[winner, loser]], nan=np.inf)
         if stated[0] < stated[1]:
             reason = message("fitting.conflict-kept-by-accuracy", "the better stated accuracy")
-        elif _trust(points, winner) < _trust(points, loser):
+        elif np.less(*trust_of(points.labels["kind"][np.array([winner, loser])])):
             reason = message("fitting.conflict-kept-by-source", "the source nearer to the rock")
         else:
             reason = message("fitting.conflict-kept-first", "the first")
@@ -163,5 +163,6 @@ def _describe(points: PointSet, winner: int, loser: int, difference: float) -> C
     return Conflict(winner, loser, difference, text)
 
 
-def _trust(points: PointSet, index: int) -> int:
-    return _TRUST.get(points.labels["kind"].word(index), 3)
+def trust_of(kinds: Labels) -> NDArray[np.int64]:
+    """Return (n,) how far from the rock each point was measured by its kind: 0 for a borehole."""
+    return np.array([_TRUST.get(kind, 3) for kind in kinds.table])[kinds.codes]

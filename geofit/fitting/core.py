@@ -108,6 +108,7 @@ class _Through:
 
 def fit_with_core(
     points: PointSet,
+    accuracy: Floats,
     parametrization: Parametrization,
     split: Split,
     kept: NDArray[np.bool_],
@@ -123,7 +124,7 @@ def fit_with_core(
         If no control net within the cap passes through them without swinging between them.
     """
     assert split.core is not None
-    data = gather_points(points, parametrization, settings, kept, split, slopes).whole()
+    data = gather_points(accuracy, parametrization, settings, kept, split, slopes).whole()
     inside = split.inside[kept]
     scaled = [x / data.unit for x in split.core]
     core = (scaled[0], scaled[1], scaled[2], scaled[3])

@@ -172,10 +172,10 @@ def _pulled(given: Posterior, model: Model, before: Floats) -> NDArray[np.bool_]
     net = model.net
     over = np.column_stack([np.ones(len(given.plane)), given.plane]) @ given.trend
     left = np.abs(given.value + over - net.space.matrix(given.plane) @ net.coefficients)
-    points, settings = model.problem.points, model.problem.settings
+    problem, settings = model.problem, model.problem.settings
     limit = np.full(len(left), net.limit)
     if not settings.strict:
-        limit = allowance(points.accuracy[given.kept], settings.interior_tolerance, net.limit)
+        limit = allowance(problem.accuracy[given.kept], settings.interior_tolerance, net.limit)
     return np.asarray((np.abs(before) > limit) & ((left <= limit) | (left < LET_GO * np.abs(before))))
 
 

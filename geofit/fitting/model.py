@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.accuracy import Conflict, Partition
+from geofit.data.allowance import accuracies
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import gather_points
@@ -37,7 +39,8 @@ class Problem:
 
     ``kept`` (n,) marks the points that conflicts left; ``boundary`` (k, 2) is the study area in map coordinates;
     ``outline`` (k, 2) is where the surface ends if that is not the study area: at faults. ``slopes`` are the measured
-    dips that the fit uses, in the frame.
+    dips that the fit uses, in the frame. ``sources`` is the noise of the kinds of points that state none
+    (:mod:`geofit.fitting.sources`), metres.
     """
 
     points: PointSet
@@ -50,15 +53,23 @@ class Problem:
     name: str
     outline: Floats | None = None
     slopes: Slopes | None = None
+    sources: Mapping[str, float] = field(default_factory=dict)
+
+    @cached_property
+    def accuracy(self) -> Floats:
+        """Accuracy of the points, (n,) metres, as stated or as found for their kind; nan where neither is known."""
+        return accuracies(self.points, self.sources)
 
     def fit(self, active: NDArray[np.bool_], stage: Callable[[str, float], None]) -> Model:
         """Return the control net that meets the core's points and approximates the other active ones."""
         if self.split.core is None:
-            given = gather_points(self.points, self.parametrization, self.settings, active, None, self.slopes)
+            given = gather_points(self.accuracy, self.parametrization, self.settings, active, None, self.slopes)
             return Model(self, approximate_all(given, self.settings, stage))
         return Model(
             self,
-            fit_with_core(self.points, self.parametrization, self.split, active, self.settings, stage, self.slopes),
+            fit_with_core(
+                self.points, self.accuracy, self.parametrization, self.split, active, self.settings, stage, self.slopes
+            ),
         )
 
     def partition(self) -> Partition:
@@ -135,6 +146,7 @@ class Model:
             "smoothing": net.field.smoothing,
             "noise": net.field.noise,
             "noise_limit": net.limit,
+            "sources": dict(self.problem.sources),
             "spacing": net.unit,
             "rounds": net.rounds,
         }

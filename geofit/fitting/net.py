@@ -219,13 +219,18 @@ class Periphery:
         tolerance's size: what is far larger is relief between sparse points.
         """
         noise, tolerance = self.field.noise, self.settings.interior_tolerance
+        if any_coarse(self.data.accuracy, tolerance):
+            # What excuses those that are known less accurately excuses no other.
+            accurate = ~(self.data.accuracy[self.outer] > tolerance)
+            misfit = misfit[accurate]
+            noise *= float(np.median(self.data.noise[self.outer][accurate])) if accurate.any() else 0.0
         shown = float(np.sqrt(misfit @ misfit / max(len(misfit), 1))) > SHOWN * noise
         if self.settings.strict or not shown or noise > BENT * tolerance or len(misfit) < ENOUGH:
             return tolerance
         return max(tolerance, noise * largest_noise(len(misfit)))
 
     def _allowed(self, limit: float) -> Floats:
-        """Return how far each point may lie from the field: as far as its stated accuracy explains, where that is more.
+        """Return how far each point may lie from the field: as far as its own accuracy explains, where that is more.
 
         With ``strict`` every point is met all the same.
         """
@@ -235,7 +240,7 @@ class Periphery:
         return allowance(accuracy, self.settings.interior_tolerance, limit)
 
     def _beyond(self, misfit: Floats, allowed: Floats, limit: float) -> Floats:
-        """Return the misfits beyond the tolerance that no stated accuracy explains, 0 for all others."""
+        """Return the misfits beyond the tolerance that no accuracy of their own explains, 0 for all others."""
         explained = (allowed > limit) & (misfit <= allowed)
         return np.where((misfit > self.settings.interior_tolerance) & ~explained, misfit, 0.0)
 
@@ -299,7 +304,7 @@ class Periphery:
             return ()
         note = message(
             "fitting.points-less-accurate",
-            "{count} points are stated to be less accurate than the interior tolerance of {tolerance:g} m, the least "
+            "{count} points are known less accurately than the interior tolerance of {tolerance:g} m, the least "
             "to {accuracy:g} m; the surface follows them as far as that, and they count in sigma like all others",
             count=len(coarse),
             tolerance=self.settings.interior_tolerance,

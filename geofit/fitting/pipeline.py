@@ -22,6 +22,7 @@ from geofit.fitting.partition import partition
 from geofit.fitting.request import require
 from geofit.fitting.slopes import slopes_of
 from geofit.fitting.solve import solve
+from geofit.fitting.sources import with_noise_of_sources
 from geofit.fitting.stages import Stages
 
 __all__ = ["fit_horizon"]
@@ -91,7 +92,7 @@ def fit_horizon(
         slopes, notes = slopes_of(orientations, name, parametrization, settings)
         parametrization = replace(parametrization, notes=(*parametrization.notes, *notes))
         given = Problem(points, settings, corners, parametrization, split, kept, conflicts, name, slopes=slopes)
-        model = solve(given, stage)
+        model = solve(with_noise_of_sources(given), stage)
         stage("check", 0.8)
         surface = fit_of(model)
         stage("adjust", 0.9)

@@ -156,7 +156,7 @@ def posterior(model: Model) -> Posterior:
     # The points between the sections of a folded surface have found their places by now.
     kept = given.kept if given.parametrization.parametric else given.kept & given.parametrization.parametrized
     data = gather_points(
-        given.points, given.parametrization, given.settings, kept, None, given.slopes, net.unit
+        given.accuracy, given.parametrization, given.settings, kept, None, given.slopes, net.unit
     ).whole()
     space = net.base if net.base.size <= LARGEST else even_space(data.area, _SPAN, net.base.degree, LARGEST)
     space, field = widened_space(space), net.field

@@ -24,7 +24,9 @@ def site(seed, stated, wrong=0.0):
     z = height(*xy.T) + rng.normal(size=n) * sd
     z[-1] += wrong
     accuracy = {"none": np.full(n, np.nan), "picks": np.where(kind == "geophysics", COARSE, np.nan), "both": sd}
-    points = PointSet(np.column_stack([xy, z]), kind=kind, accuracy=accuracy[stated])
+    # Where nothing is told, the kinds are not either: by them the fit would find the accuracies itself.
+    told = "point" if stated == "none" else kind
+    points = PointSet(np.column_stack([xy, z]), kind=told, accuracy=accuracy[stated])
     return points, height, np.arange(n) < HOLES
 
 
