@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -18,6 +19,7 @@ from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
 from geofit.data.prediction import PredictionResult, Uncertainty
 from geofit.fitting.calibration import Calibration, uncalibrated
+from geofit.fitting.conflicts import trust_of
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.fitting.net import Net
@@ -64,6 +66,13 @@ class PredictionError:
     def sd(self, plane: Floats) -> Floats:
         """Return the (n,) standard deviations at (n, 2) places in units, metres."""
         return np.asarray(self.calibration.at(plane) * np.sqrt(self.variance(plane)))
+
+    @property
+    def contact_noise(self) -> float:
+        """Noise of a new hole's contact, metres (1 sigma): that of the points measured nearest to the rock."""
+        given = self.posterior
+        trust = trust_of(self.model.problem.points.labels["kind"][given.kept])
+        return given.noise / math.sqrt(float(np.median(given.weight[trust == trust.min()])))
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +134,7 @@ def uncertainty_on(grid: Grid, error_model: PredictionError) -> Uncertainty:
     sd = factors * np.sqrt(error_model.variance(grid.plane))
     return Uncertainty(
         grid.x, grid.y, grid.at_nodes(sd), float(np.median(factors)), float(sd.mean()), float(sd.max()),
-        grid.at_nodes(factors), error_model.model.problem.parametrization.frame.kind, error_model.posterior.noise,
+        grid.at_nodes(factors), error_model.model.problem.parametrization.frame.kind, error_model.contact_noise,
     )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ import pytest
 from refusals import refused
 from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import splu
-from truth import EASTING, NORTHING, Truth, paper_arrangement
+from truth import EASTING, NORTHING, Truth, hills, paper_arrangement
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.errors import FitError, SettingsError
@@ -298,3 +298,19 @@ def test_the_posterior_of_a_core_that_lost_points_has_the_unit_of_its_fit():
     found = examine(surface)
     assert not [note for note in found.notes if note.code == "prediction.error-not-found"]
     assert found.uncertainty is not None
+
+
+@pytest.mark.parametrize("stated", [True, False])
+def test_a_new_hole_scatters_as_holes_do_and_not_as_picks(stated):
+    rng, height = np.random.default_rng(11), hills(11)
+    xy = rng.uniform((EASTING, NORTHING), (EASTING + 2000, NORTHING + 2000), (450, 2))
+    sd = np.repeat([0.05, 4.0], [150, 300])
+    xyz = np.column_stack([xy, height(*xy.T) + sd * rng.normal(size=450)])
+    kind = np.repeat(["borehole", "geophysics"], [150, 300])
+    surface = fit_horizon(PointSet(xyz, kind=kind, accuracy=sd if stated else np.nan), FitSettings(core="none"))
+    uncertainty = examine(surface).uncertainty
+    assert uncertainty.noise < 1.0
+    new = rng.uniform((EASTING + 100, NORTHING + 100), (EASTING + 1900, NORTHING + 1900), (1000, 2))
+    found = height(*new.T) + 0.05 * rng.normal(size=1000)
+    held = 1.645 * prediction_sd(surface, uncertainty, new, of="contact")
+    assert 0.82 <= (np.abs(found - surface.elevation(*new.T)) <= held).mean() <= 0.97
