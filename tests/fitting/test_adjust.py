@@ -28,7 +28,7 @@ def fitted():
     kept = np.ones(len(truth.points), bool)
     # As fit_horizon does: on small banded systems threads wait for each other.
     with threadpool_limits(limits=1):
-        net = fit_with_core(truth.points, parametrization, split, kept, settings, silent)
+        net = fit_with_core(truth.points, truth.points.accuracy, parametrization, split, kept, settings, silent)
     return net, parametrization, split
 
 
