@@ -21,14 +21,14 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from geofit.fitting.active_points import gather_points
-from geofit.fitting.field import FieldChoice, planes_of, slope_of, widened_space
+from geofit.fitting.field import FieldChoice, planes_of, relative_noise, slope_of, widened_space
 from geofit.fitting.model import Model
 from geofit.fitting.resolution import even_space
 from geofit.splines.blocks import BlockFactor, InverseBlocks
 from geofit.splines.matern import MaternPrecision
 from geofit.splines.tensor import TensorSpace, band_sum
 
-__all__ = ["Posterior", "posterior"]
+__all__ = ["Posterior", "noise_of_unused", "posterior"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -142,6 +142,12 @@ class Posterior:
     @cached_property
     def _inverse(self) -> InverseBlocks:
         return self.factor.inverse()
+
+
+def noise_of_unused(given: Posterior, model: Model, points: Ints) -> Floats:
+    """Return the noise (k,) of points of the horizon that take no part in the fit, metres (1 sigma)."""
+    problem = model.problem
+    return given.noise * relative_noise(problem.accuracy, problem.settings.interior_tolerance)[points]
 
 
 def posterior(model: Model) -> Posterior:

@@ -19,7 +19,7 @@ from geofit.fitting.calibration import common_factor
 from geofit.fitting.deletion import linear_fit
 from geofit.fitting.model import Model
 from geofit.fitting.outliers import LIMIT, find_outliers
-from geofit.fitting.posterior import posterior
+from geofit.fitting.posterior import noise_of_unused, posterior
 
 __all__ = ["fit_robustly"]
 
@@ -85,7 +85,7 @@ def _judge(model: Model, rejected: NDArray[np.bool_]) -> NDArray[np.bool_]:
     if len(out):
         plane = parametrization.plane[out] / unit
         error = parametrization.values[out] - given.height(plane)
-        sd = np.sqrt(factor**2 * given.variance(plane) + given.noise**2)
+        sd = np.sqrt(factor**2 * given.variance(plane) + noise_of_unused(given, model, out) ** 2)
         result[out] = np.abs(error) > LIMIT * sd
     return result
 

@@ -27,7 +27,7 @@ from geofit.fitting.deletion import LinearFit, linear_fit
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.fitting.outliers import LIMIT, find_outliers
-from geofit.fitting.posterior import Posterior, posterior
+from geofit.fitting.posterior import Posterior, noise_of_unused, posterior
 from geofit.prediction.bands import Grid, PredictionError, grid_over, uncertainty_on
 from geofit.prediction.crossval import Fold, about_the_hull, calibrated, cross_validation_folds, left_out, one_by_one
 from geofit.prediction.drilling import suggest_holes
@@ -282,7 +282,7 @@ def _outliers(model: Model, fit: LinearFit, factor: Floats) -> tuple[Outlier, ..
         parametrization = model.problem.parametrization
         plane = parametrization.plane[out] / clean.net.unit
         error = parametrization.values[out] - given.height(plane)
-        sd = np.sqrt(common**2 * given.variance(plane) + given.noise**2)
+        sd = np.sqrt(common**2 * given.variance(plane) + noise_of_unused(given, clean, out) ** 2)
         again = [Outlier(int(k), float(e), float(s), float(abs(e) / s)) for k, e, s in zip(out, error, sd, strict=True)]
         again = [outlier for outlier in again if outlier.ratio > LIMIT]
         more = find_outliers(without, np.full(len(given.value), common))
