@@ -258,11 +258,11 @@ def _tolerance_checks(surface: FittedSurface, d: Floats, exact: NDArray[np.bool_
                 **figures,
             )
         limit = surface.diagnostics.get("noise_limit", tolerance)
-        noisy = figures["count"] > 0 and tolerance < worst <= limit
         accuracy = accuracies(surface.points, surface.diagnostics.get("sources", {}))
-        stated = figures["count"] > 0 and not noisy and any_coarse(accuracy, tolerance)
+        stated = figures["count"] > 0 and any_coarse(accuracy, tolerance)
         if stated:
             stated = bool((np.abs(apart) <= allowance(accuracy[loose], tolerance, limit)).all())
+        noisy = not stated and figures["count"] > 0 and tolerance < worst <= limit
         if stated:
             text = message(
                 "checks.beyond-tolerance-as-stated",

@@ -26,7 +26,7 @@ SHARE = 0.7
 def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
     """Adjust locally until sigma is below epsilon or no step helps, and say which.
 
-    Points that are stated to be less accurate than the tolerance are not chased.
+    Points that are known less accurately than the tolerance are not chased.
     """
     given = model.problem
     for step in range(given.settings.max_iterations + 1):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -212,18 +213,33 @@ class Periphery:
         energy = precision_band(space, self.field.at_most(space.degree))
         return over + solved_beside(space, energy, start.coefficients - over, frozen, plane, rest, weight)
 
+    @cached_property
+    def _coarse(self) -> bool:
+        """Whether any point is known less accurately than the tolerance."""
+        return any_coarse(self.data.accuracy, self.settings.interior_tolerance)
+
+    @cached_property
+    def _accurate(self) -> NDArray[np.bool_]:
+        """Which of the points to approximate are not."""
+        return ~(self.data.accuracy[self.outer] > self.settings.interior_tolerance)
+
+    @cached_property
+    def _noise(self) -> float:
+        """Noise of the accurate points, metres: what excuses the coarse ones excuses none of these."""
+        if not self._coarse:
+            return self.field.noise
+        relative = self.data.noise[self.outer][self._accurate]
+        return self.field.noise * float(np.median(relative)) if len(relative) else 0.0
+
     def _limit(self, misfit: Floats) -> float:
         """Return how far a point may lie from the field: the tolerance, or as far as noise explains.
 
         It does where so many points show it that their misfit to the field is the noise itself, and where it is of the
         tolerance's size: what is far larger is relief between sparse points.
         """
-        noise, tolerance = self.field.noise, self.settings.interior_tolerance
-        if any_coarse(self.data.accuracy, tolerance):
-            # What excuses those that are known less accurately excuses no other.
-            accurate = ~(self.data.accuracy[self.outer] > tolerance)
-            misfit = misfit[accurate]
-            noise *= float(np.median(self.data.noise[self.outer][accurate])) if accurate.any() else 0.0
+        noise, tolerance = self._noise, self.settings.interior_tolerance
+        if self._coarse:
+            misfit = misfit[self._accurate]
         shown = float(np.sqrt(misfit @ misfit / max(len(misfit), 1))) > SHOWN * noise
         if self.settings.strict or not shown or noise > BENT * tolerance or len(misfit) < ENOUGH:
             return tolerance
@@ -296,16 +312,15 @@ class Periphery:
 
     def _coarse_notes(self) -> tuple[Message, ...]:
         """Count the points that are held to their own accuracy only."""
-        if self.settings.strict or not any_coarse(self.data.accuracy, self.settings.interior_tolerance):
+        if self.settings.strict or not self._coarse:
             return ()
-        accuracy = self.data.accuracy[self.outer]
-        coarse = accuracy[accuracy > self.settings.interior_tolerance]
+        coarse = self.data.accuracy[self.outer][~self._accurate]
         if not len(coarse):
             return ()
         note = message(
             "fitting.points-less-accurate",
             "{count} points are known less accurately than the interior tolerance of {tolerance:g} m, the least "
-            "to {accuracy:g} m; the surface follows them as far as that, and they count in sigma like all others",
+            "to {accuracy:.3g} m; the surface follows them as far as that, and they count in sigma like all others",
             count=len(coarse),
             tolerance=self.settings.interior_tolerance,
             accuracy=float(coarse.max()),
@@ -322,14 +337,15 @@ class Periphery:
             "{count} points beyond {tolerance:g} m, as noise of {noise:.3g} m predicts; they are listed, not fitted",
             count=count,
             tolerance=self.settings.interior_tolerance,
-            noise=self.field.noise,
+            noise=self._noise,
         )
         return (note,)
 
     def _bent_notes(self) -> tuple[Message, ...]:
-        """Say where meeting the points costs more between them than it gains at them."""
+        """Say where meeting the points costs more between them than it gains at them; coarse ones are not met."""
         noise, tolerance = self.field.noise, self.settings.interior_tolerance
-        if not self._chased or noise <= BENT * tolerance or len(self.data.plane) < ENOUGH:
+        coarse = self._coarse and not self.settings.strict
+        if coarse or not self._chased or noise <= BENT * tolerance or len(self.data.plane) < ENOUGH:
             return ()
         note = message(
             "fitting.points-scatter",

@@ -2,8 +2,8 @@
 
 Boreholes, drawn sections and seismic picks of one horizon scatter about the same field, each by a noise of its own (a
 nugget for each source). Points of one kind alone cannot tell noise from relief below their spacing. Those of a kind
-that is measured farther from the rock can, against the ones nearer to it: the relief is the same to both, and what
-they scatter more by is noise. No kind is ever taken to be noisier than one that is farther from the rock says.
+that is measured farther from the rock can, against the ones nearer to it: the relief is the same for both, and what
+they scatter by more is noise. The kind nearest to the rock is never judged: its points are met.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ MOST = 200.0
 
 
 @dataclass(frozen=True, eq=False)
-class _Judged:
+class _Trial:
     """Noise of each point relative to the others, -2 log of the restricted likelihood, and the field that gives it."""
 
     noise: Floats
@@ -56,11 +56,13 @@ def with_noise_of_sources(problem: Problem) -> Problem:
     kinds, kept, settings = problem.points.labels["kind"], problem.kept, problem.settings
     if len(kinds.table) < 2 or settings.smoothing != "auto" or problem.parametrization.parametric:
         return problem
+    some = np.flatnonzero(kept)[:: max(int(kept.sum()) // SKETCHED, 1)]
+    judged, found = _to_judge(kinds[some], problem.accuracy[some]), {}
+    if not judged:
+        return problem
     data = gather_points(problem.accuracy, problem.parametrization, settings, kept, problem.split)
-    some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
-    judged, found = _judged(kinds[kept][some], data.accuracy[some]), {}
     for size in (SKETCH, FIRST_LEVEL):
-        found = _found(even_space(data.area, EVEN, degree_for(len(data.plane)), size), data, some, judged)
+        found = _found(even_space(data.area, EVEN, degree_for(len(data.plane)), size), data, judged)
         judged = {kind: own for kind, own in judged.items() if kind in found}
     if not found:
         return problem
@@ -72,14 +74,14 @@ def with_noise_of_sources(problem: Problem) -> Problem:
 def _note(kind: str, noise: float) -> Message:
     return message(
         "fitting.source-scatters",
-        "points of kind {kind} scatter by {noise:.2g} m about the surface, which the points nearer to the rock do not: "
-        "they count as that accurate, for no accuracy is stated",
+        "points of kind {kind} scatter about the surface by {noise:.2g} m, more than those measured nearer to the "
+        "rock; no accuracy is stated, so this scatter counts as theirs",
         kind=kind,
         noise=noise,
     )
 
 
-def _judged(kinds: Labels, accuracy: Floats) -> dict[str, NDArray[np.bool_]]:
+def _to_judge(kinds: Labels, accuracy: Floats) -> dict[str, NDArray[np.bool_]]:
     """Return the points of each kind to judge, the kinds farthest from the rock first."""
     trust, unstated = trust_of(kinds), np.isnan(accuracy)
     judged = {}
@@ -90,24 +92,25 @@ def _judged(kinds: Labels, accuracy: Floats) -> dict[str, NDArray[np.bool_]]:
     return judged
 
 
-def _found(space: TensorSpace, data: Data, some: slice, judged: dict[str, NDArray[np.bool_]]) -> dict[str, float]:
+def _found(space: TensorSpace, data: Data, judged: dict[str, NDArray[np.bool_]]) -> dict[str, float]:
     """Return the noise, in metres, of the kinds that the likelihood on a space gives more than the others."""
     if not judged:
         return {}
+    some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
     plane, value = data.plane[some], data.value[some]
 
-    def judge(noise: Floats, known: list[FieldChoice]) -> _Judged:
+    def trial(noise: Floats, known: list[FieldChoice]) -> _Trial:
         field, own = choose_covariance(space, plane, value, noise, None, known, data.trend)[0]
-        return _Judged(noise, own + 2 * float(np.log(noise).sum()), field)
+        return _Trial(noise, own + 2 * float(np.log(noise).sum()), field)
 
-    def times(factor: float, judged: _Judged, own: NDArray[np.bool_]) -> _Judged:
-        noise = np.where(own, judged.noise * factor, judged.noise)
-        return judge(noise, [judged.field]) if np.ptp(noise) < MOST else replace(judged, value=np.inf)
+    def times(factor: float, before: _Trial, own: NDArray[np.bool_]) -> _Trial:
+        noise = np.where(own, before.noise * factor, before.noise)
+        return trial(noise, [before.field]) if np.ptp(noise) < MOST else replace(before, value=np.inf)
 
-    best = judge(np.array(data.noise[some]), [])
+    best = trial(np.array(data.noise[some]), [])
     found: dict[str, NDArray[np.bool_]] = {}
     for kind, own in judged.items():
-        # What the kinds farther from the rock scatter by stays: it was found relative to this kind as well.
+        # What the kinds farther from the rock scatter by keeps its ratio: it was found relative to this kind as well.
         raised = np.logical_or.reduce([own, *found.values()])
         louder = best
         for step in (STEP, STEP**2):
