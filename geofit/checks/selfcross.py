@@ -94,9 +94,12 @@ def _crossings(triangles: Floats) -> tuple[int, Floats]:
     centre = (low + high) / 2
     radius = np.linalg.norm(high - low, axis=1) / 2
     pairs = _near(centre, radius)
-    boxes = (low[pairs[:, 0]] <= high[pairs[:, 1]]).all(axis=1) & (low[pairs[:, 1]] <= high[pairs[:, 0]]).all(axis=1)
-    pairs = pairs[boxes]
-    pairs = pairs[_both_sides(triangles, pairs) & _both_sides(triangles, pairs[:, ::-1])]
+    for k in range(3):
+        # Axis by axis: few pairs are left for the second one.
+        one, other = pairs.T
+        pairs = pairs[(low[one, k] <= high[other, k]) & (low[other, k] <= high[one, k])]
+    pairs = pairs[_both_sides(triangles, pairs)]
+    pairs = np.unique(pairs[_both_sides(triangles, pairs[:, ::-1])], axis=0)
     hit = np.zeros(len(pairs), bool)
     where = np.zeros((len(pairs), 3))
     for first, second in ((0, 1), (1, 0)):
@@ -109,7 +112,10 @@ def _crossings(triangles: Floats) -> tuple[int, Floats]:
 
 
 def _near(centre: Floats, radius: Floats) -> Ints:
-    """Pairs whose balls meet; the large ones are compared apart, so that they do not widen everybody's search."""
+    """Pairs whose balls meet, and others.
+
+    The large ones are compared apart, so that they do not widen everybody's search.
+    """
     usual = 3 * float(np.median(radius))
     small, large = np.flatnonzero(radius <= usual), np.flatnonzero(radius > usual)
     pairs = [small[cKDTree(centre[small]).query_pairs(2 * float(radius[small].max()), output_type="ndarray")]]
@@ -117,9 +123,7 @@ def _near(centre: Floats, radius: Floats) -> Ints:
     around = tree.query_ball_point(centre[large], radius[large] + radius.max())
     pairs += [np.column_stack([np.full(len(near), k), near]) for k, near in zip(large.tolist(), around, strict=True)]
     found = np.concatenate(pairs).reshape(-1, 2)
-    found = found[found[:, 0] != found[:, 1]]
-    apart = np.linalg.norm(centre[found[:, 0]] - centre[found[:, 1]], axis=1)
-    return np.unique(np.sort(found[apart <= radius[found].sum(axis=1)], axis=1), axis=0)
+    return np.sort(found[found[:, 0] != found[:, 1]], axis=1)
 
 
 def _both_sides(triangles: Floats, pairs: Ints) -> Bools:

@@ -23,7 +23,7 @@ from geofit.fitting.field import FieldChoice, Smoothed
 from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes, some_breaks
 from geofit.fitting.net import Net, Periphery, cap_for, in_patches, smoothed
 from geofit.fitting.parametrize import Parametrization
-from geofit.fitting.resolution import choose_field, longest_span
+from geofit.fitting.resolution import Choice, choose_field, longest_span
 from geofit.fitting.skin import Lines, lofted, minimum_norm_correction, refine_knots, ruled, section_lines
 from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
@@ -115,8 +115,11 @@ def fit_with_core(
     settings: FitSettings,
     stage: Callable[[str, float], None],
     slopes: Slopes | None = None,
+    chosen: Choice | None = None,
 ) -> Net:
     """Fit a surface whose core passes through its points.
+
+    ``chosen`` is the field to take; None: it is chosen by these points.
 
     Raises
     ------
@@ -130,12 +133,12 @@ def fit_with_core(
     core = (scaled[0], scaled[1], scaled[2], scaled[3])
     degree, most = degree_for(len(data.plane)), cap_for(settings, len(data.plane), A_POINT)
     stage("field", 0.25)
-    field, coarse = choose_field(data, settings, most)
-    chosen = settings.core == "auto" and settings.smoothing == "auto" and not parametrization.parametric
+    field, coarse = choose_field(data, settings, most) if chosen is None else chosen
+    automatic = settings.core == "auto" and settings.smoothing == "auto" and not parametrization.parametric
     little = min(settings.interior_tolerance, LITTLE * field.spread)
     drawn = float(np.mean(parametrization.section[kept][inside] != "")) >= DRAWN
     resolved = (RESOLVED_DRAWN if drawn else RESOLVED) * field.spread
-    if chosen and field.noise > max(resolved, little):
+    if automatic and field.noise > max(resolved, little):
         raise ExactnessError(
             message(
                 "fitting.points-support-to-noise",

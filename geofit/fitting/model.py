@@ -19,6 +19,7 @@ from geofit.fitting.assemble import patches_of
 from geofit.fitting.core import fit_with_core
 from geofit.fitting.net import Net, approximate_all
 from geofit.fitting.parametrize import Parametrization
+from geofit.fitting.resolution import Choice
 from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
 from geofit.splines.bspline import greville
@@ -60,15 +61,28 @@ class Problem:
         """Accuracy of the points, (n,) metres, as stated or as found for their kind; nan where neither is known."""
         return accuracies(self.points, self.sources)
 
-    def fit(self, active: NDArray[np.bool_], stage: Callable[[str, float], None]) -> Model:
-        """Return the control net that meets the core's points and approximates the other active ones."""
+    def fit(
+        self, active: NDArray[np.bool_], stage: Callable[[str, float], None], chosen: Choice | None = None
+    ) -> Model:
+        """Return the control net that meets the core's points and approximates the other active ones.
+
+        ``chosen`` is the field to take; None: it is chosen by these points.
+        """
         if self.split.core is None:
             given = gather_points(self.accuracy, self.parametrization, self.settings, active, None, self.slopes)
-            return Model(self, approximate_all(given, self.settings, stage))
+            return Model(self, approximate_all(given, self.settings, stage, chosen))
         return Model(
             self,
             fit_with_core(
-                self.points, self.accuracy, self.parametrization, self.split, active, self.settings, stage, self.slopes
+                self.points,
+                self.accuracy,
+                self.parametrization,
+                self.split,
+                active,
+                self.settings,
+                stage,
+                self.slopes,
+                chosen,
             ),
         )
 

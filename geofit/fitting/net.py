@@ -30,7 +30,7 @@ from geofit.fitting.field import (
     smooth,
 )
 from geofit.fitting.likelihood import plane_coefficients
-from geofit.fitting.resolution import choose_field
+from geofit.fitting.resolution import Choice, choose_field
 from geofit.geometry.cells import tabulate
 from geofit.splines.patch import Patch
 from geofit.splines.tensor import TensorSpace
@@ -106,12 +106,15 @@ def smoothed(data: Data, space: TensorSpace, field: FieldChoice) -> Smoothed:
     return smooth(space, field, data.plane, data.value, weight, data.trend, data.slopes)
 
 
-def approximate_all(data: Data, settings: FitSettings, stage: Stage) -> Net:
-    """Fit a surface without a core: the field, brought within the interior tolerance of sparse points."""
+def approximate_all(data: Data, settings: FitSettings, stage: Stage, chosen: Choice | None = None) -> Net:
+    """Fit a surface without a core: the field, brought within the interior tolerance of sparse points.
+
+    ``chosen`` is the field to take; None: it is chosen by these points.
+    """
     n = len(data.plane)
     most = cap_for(settings, n)
     stage("field", 0.25)
-    field, base = choose_field(data, settings, most)
+    field, base = choose_field(data, settings, most) if chosen is None else chosen
     start = smoothed(data, base, field)
     stage("periphery", 0.5)
     periphery = Periphery(data, np.ones(n, bool), None, field, settings, most, refit=False)

@@ -18,7 +18,7 @@ from geofit.fitting.likelihood import BEHIND
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
-__all__ = ["EVEN", "choose_field", "even_space", "longest_span"]
+__all__ = ["EVEN", "Choice", "choose_field", "even_space", "longest_span"]
 
 Rectangle = tuple[float, float, float, float]
 
@@ -45,6 +45,8 @@ class Level:
     value: float
 
 
+#: The regional field, and the even space that resolves it.
+Choice = tuple[FieldChoice, TensorSpace]
 #: What finds the fields on a space, the best first, given those to begin with.
 Search = Callable[[TensorSpace, Sequence[FieldChoice]], list[Level]]
 
@@ -63,7 +65,7 @@ def even_space(area: Rectangle, span: float, degree: int, most: int) -> TensorSp
     )
 
 
-def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldChoice, TensorSpace]:
+def choose_field(data: Data, settings: FitSettings, most: int) -> Choice:
     """Choose the regional field (:func:`geofit.fitting.field.choose_covariance`) and the even space that resolves it.
 
     Smoothness and direction are found on few control points, where a value of the likelihood costs little, range and

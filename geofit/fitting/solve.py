@@ -67,15 +67,19 @@ def _without_core(problem: Problem, error: ExactnessError) -> Problem:
 
 
 def _corrected(model: Model, stage: Stages) -> Model:
-    """Project the points between the sections on the surface, and fit again with the parameters found."""
-    between = ~model.problem.parametrization.parametrized
+    """Project the points between the sections on the surface, and fit again with the parameters found.
+
+    The first of these fits chooses the field by all points; later ones keep it, for they move points but little.
+    """
+    between, chosen = ~model.problem.parametrization.parametrized, None
     for _ in range(CORRECTIONS):
         problem, parametrization = model.problem, model.problem.parametrization
         foot = project(model.patches(), parametrization.frame.turn_back(parametrization.values[between]))
         plane = parametrization.plane.copy()
         moved = np.abs(plane[between] - np.column_stack([foot.u, foot.v])).max()
         plane[between] = np.column_stack([foot.u, foot.v])
-        model = replace(problem, parametrization=parametrization.with_plane(plane)).fit(problem.kept, stage)
+        model = replace(problem, parametrization=parametrization.with_plane(plane)).fit(problem.kept, stage, chosen)
+        chosen = (model.net.field, model.net.base)
         if moved < 1e-3:
             break
     return model
