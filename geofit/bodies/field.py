@@ -80,8 +80,10 @@ class BodyField:
         beyond = np.linalg.norm(off, axis=1)
         fitted = near @ self.frame.matrix.T
         gradient = self.frame.gradient(self.interpolant.gradient(fitted))
-        value = self._raw(near)
         out = beyond > 0
+        if not (out.any() or self.cut):
+            return gradient
+        value = self._raw(near)
         if out.any():
             along = np.where((off == 0) & (value > 0)[:, None], gradient, 0.0)
             gradient[out] = (along + off / np.maximum(beyond, 1e-300)[:, None])[out]

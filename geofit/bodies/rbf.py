@@ -10,6 +10,7 @@ shape win. A shift of the origin changes the linear part only, so it changes not
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -61,12 +62,21 @@ class Rbf:
     def value(self, x: Floats) -> Floats:
         """Return the values (n,) at (n, 3) places."""
         sums = values(x, self.centres, self.weights, self.dipoles, self.moments, self.reach)
-        return np.asarray(sums + _monomials(x) @ self.trend)
+        linear, square = self._drift
+        return np.asarray(sums + self.trend[0] + (x * (linear + x @ square)).sum(axis=1))
 
     def gradient(self, x: Floats) -> Floats:
         """Return the gradients (n, 3) at (n, 3) places."""
         sums = gradients(x, self.centres, self.weights, self.dipoles, self.moments, self.reach)
-        return np.asarray(sums + (_slopes(x) @ self.trend).reshape(-1, 3))
+        linear, square = self._drift
+        return np.asarray(sums + linear + 2 * (x @ square))
+
+    @cached_property
+    def _drift(self) -> tuple[Floats, Floats]:
+        """The trend's linear part, (3,), and its square part as a symmetric matrix, (3, 3)."""
+        square = np.zeros((3, 3))
+        square[FIRST, SECOND] = self.trend[4:] / 2
+        return self.trend[1:4], square + square.T
 
 
 class Saddle:

@@ -37,14 +37,13 @@ def relaxed_grids(field: Field, layout: QuadMesh) -> Floats | None:
         small = np.stack([index[:, :-1, :-1], index[:, 1:, :-1], index[:, 1:, 1:], index[:, :-1, 1:]], axis=-1).reshape(
             -1, 4
         )
-        reach = layout.spacing / 2
+        around, reach = small.T.ravel(), layout.spacing / 2
         places = project_along_gradient(field, places, reach=reach, steps=2)
         for _ in range(sweeps):
             middle, area = places[small].mean(axis=1), np.linalg.norm(_normals(places, small), axis=1)
-            total, weight = np.zeros_like(places), np.zeros(len(places))
-            for k in range(4):
-                np.add.at(total, small[:, k], middle * area[:, None])
-                np.add.at(weight, small[:, k], area)
+            weight = np.bincount(around, np.tile(area, 4), len(places))
+            pulled = np.tile(middle * area[:, None], (4, 1))
+            total = np.column_stack([np.bincount(around, pulled[:, k], len(places)) for k in range(3)])
             places = (1 - PART) * places + PART * total / np.maximum(weight, 1e-300)[:, None]
             places = project_along_gradient(field, places, reach=reach, steps=2)
         grid = places[index]

@@ -15,6 +15,8 @@ __all__ = ["FootPoints", "foot_points", "project_along_gradient", "signed_distan
 Floats = NDArray[np.float64]
 
 STEPS = 60
+#: A step no longer than this share of the points' extent: the next one would be rounding.
+STILL = 1e-8
 #: The factor of a step across the surface is not divided by less: at a centre of curvature it would have no end.
 LEAST = 0.2
 
@@ -123,12 +125,18 @@ def signed_distance(field: Field, xyz: ArrayLike, mesh: TriangleMesh | None = No
 
 
 def project_along_gradient(field: Field, xyz: ArrayLike, *, reach: float = np.inf, steps: int = 6) -> Floats:
-    """Return points moved onto the surface by Newton steps along the gradient, none longer than ``reach`` metres."""
+    """Return points moved onto the surface by Newton steps along the gradient, none longer than ``reach`` metres.
+
+    At most ``steps`` are made, and none after one that moves no point: their lengths are squared with each.
+    """
     x = points_of(xyz).copy()
+    still = STILL * float(np.ptp(x, axis=0).max()) if len(x) else 0.0
     for _ in range(steps):
         g = field.gradient(x)
         square = (g**2).sum(axis=1)
         step = -(field.value(x) / np.where(square > 0, square, 1.0))[:, None] * g
         size = np.linalg.norm(step, axis=1)
         x += step * np.minimum(1, reach / np.where(size > 0, size, 1.0))[:, None]
+        if size.max(initial=0.0) <= still:
+            break
     return x
