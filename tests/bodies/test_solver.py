@@ -8,7 +8,7 @@ import pytest
 from geofit.bodies.active import complementarity
 from geofit.bodies.body import BodyFit
 from geofit.bodies.kernels import CUBIC, LINEAR, gradients, gram, values
-from geofit.bodies.rbf import Saddle
+from geofit.bodies.rbf import Rbf, Saddle
 
 
 @pytest.mark.parametrize("reach", [CUBIC, 2.5])
@@ -87,3 +87,19 @@ def test_volumes_hold_the_truth(ring: BodyFit) -> None:
     assert volumes.p10 < 2 * np.pi**2 * 0.55 * 0.22**2 * 1e6 < volumes.p90
     assert len(volumes.values) == 100
     assert ring.volumes().values.tobytes() == volumes.values.tobytes()
+
+
+def test_drift_and_its_gradient_are_those_of_its_ten_terms() -> None:
+    rng = np.random.default_rng(4)
+    trend, x, step = rng.normal(size=10), rng.normal(0, 50, (40, 3)), 1e-3
+    none = np.zeros((0, 3))
+    drift = Rbf(none, np.zeros(0), none, none, trend)
+    terms = np.column_stack(
+        [np.ones(len(x)), x, x[:, 0] ** 2, x[:, 0] * x[:, 1], x[:, 0] * x[:, 2], x[:, 1] ** 2, x[:, 1] * x[:, 2],
+         x[:, 2] ** 2]
+    )  # fmt: skip
+    assert drift.value(x) == pytest.approx(terms @ trend, rel=1e-12, abs=1e-9)
+    for axis in range(3):
+        by = step * np.eye(3)[axis]
+        slope = (drift.value(x + by) - drift.value(x - by)) / (2 * step)
+        assert drift.gradient(x)[:, axis] == pytest.approx(slope, rel=1e-6, abs=1e-6)

@@ -11,6 +11,7 @@ import pytest
 import geofit.implicit as implicit
 from geofit.data.errors import SettingsError
 from geofit.implicit.field import box_of, points_of
+from geofit.implicit.foot import project_along_gradient
 
 RNG = np.random.default_rng(7)
 LINE = np.array([[0.0, 0, 0], [1, 1, 0], [2, 0, 1], [3, 1, 1]])
@@ -107,3 +108,22 @@ def test_import_needs_numpy_only() -> None:
 def test_every_exported_name_exists() -> None:
     assert all(callable(getattr(implicit, name)) or name == "POTENTIALS" for name in implicit.__all__)
     assert implicit.isosurface.__name__ == "isosurface"
+
+
+def test_newton_steps_end_where_they_move_nothing() -> None:
+    asked = []
+
+    class Counted(implicit.Sphere):
+        def gradient(self, xyz: np.ndarray) -> np.ndarray:
+            asked.append(len(xyz))
+            return super().gradient(xyz)
+
+    ball = Counted([0, 0, 0], 1.0)
+    places = np.random.default_rng(3).normal(size=(200, 3))
+    moved = project_along_gradient(ball, places, steps=30)
+    assert np.abs(np.linalg.norm(moved, axis=1) - 1).max() < 1e-12
+    assert len(asked) < 5
+    # A reach that is short against the way takes as many steps as the way asks for.
+    assert (
+        np.abs(np.linalg.norm(project_along_gradient(ball, 3 * places, reach=0.5, steps=40), axis=1) - 1).max() < 1e-12
+    )
