@@ -95,7 +95,7 @@ def _crossings(triangles: Floats) -> tuple[int, Floats]:
     radius = np.linalg.norm(high - low, axis=1) / 2
     pairs = _near(centre, radius)
     for k in range(3):
-        # Axis by axis: few pairs are left for the second one.
+        # Each axis looks only at the pairs that the ones before it leave.
         one, other = pairs.T
         pairs = pairs[(low[one, k] <= high[other, k]) & (low[other, k] <= high[one, k])]
     pairs = pairs[_both_sides(triangles, pairs)]
@@ -112,9 +112,9 @@ def _crossings(triangles: Floats) -> tuple[int, Floats]:
 
 
 def _near(centre: Floats, radius: Floats) -> Ints:
-    """Pairs whose balls meet, and others.
+    """All pairs whose balls meet, with others whose balls nearly do; some come twice.
 
-    The large ones are compared apart, so that they do not widen everybody's search.
+    The large balls are compared apart, so that they do not widen everybody's search.
     """
     usual = 3 * float(np.median(radius))
     small, large = np.flatnonzero(radius <= usual), np.flatnonzero(radius > usual)

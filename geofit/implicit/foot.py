@@ -15,7 +15,7 @@ __all__ = ["FootPoints", "foot_points", "project_along_gradient", "signed_distan
 Floats = NDArray[np.float64]
 
 STEPS = 60
-#: A step no longer than this share of the points' extent: the next one would be rounding.
+#: A step no longer than this share of the points' extent is the last: the next one would be rounding.
 STILL = 1e-8
 #: The factor of a step across the surface is not divided by less: at a centre of curvature it would have no end.
 LEAST = 0.2
@@ -127,7 +127,8 @@ def signed_distance(field: Field, xyz: ArrayLike, mesh: TriangleMesh | None = No
 def project_along_gradient(field: Field, xyz: ArrayLike, *, reach: float = np.inf, steps: int = 6) -> Floats:
     """Return points moved onto the surface by Newton steps along the gradient, none longer than ``reach`` metres.
 
-    At most ``steps`` are made, and none after one that moves no point: their lengths are squared with each.
+    At most ``steps`` are made, and none after one that hardly moves any point: where the gradient does not vanish, the
+    next would be about as long as its square.
     """
     x = points_of(xyz).copy()
     still = STILL * float(np.ptp(x, axis=0).max()) if len(x) else 0.0
