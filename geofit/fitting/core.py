@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from geofit.data.errors import ExactnessError
 from geofit.data.messages import Message, message
@@ -66,12 +67,14 @@ LITTLE = 0.05
 class _Core:
     """What passes through points: those marked ``inside``, in a rectangle in units, with the field chosen for all.
 
-    ``coarse`` is the space on which the field was chosen; ``lines`` are the sections.
+    ``coarse`` is the space on which the field was chosen; ``lines`` are the sections. ``between`` marks the points
+    between the section curves of a fold.
     """
 
     data: Data
     rectangle: Rectangle
     inside: NDArray[np.bool_]
+    between: NDArray[np.bool_]
     field: FieldChoice
     coarse: TensorSpace
     lines: Lines
@@ -160,9 +163,10 @@ def fit_with_core(
                 "across='linear' needs at least two straight, named sections; the core is cubic across",
             ).with_severity("warning"),
         )
-    limits = _Limits(most, min(LONGEST, max(longest_span(coarse), LONGEST_IN_GROUPS)))
+    first = limits = _Limits(most, min(LONGEST, max(longest_span(coarse), LONGEST_IN_GROUPS)))
+    between = ~parametrization.parametrized[kept]
     while True:
-        given = _Core(data, core, inside, field, coarse, lines, parametrization.parametric, settings)
+        given = _Core(data, core, inside, between, field, coarse, lines, parametrization.parametric, settings)
         try:
             through = _through_points(given, limits, linear)
             break
@@ -174,7 +178,12 @@ def fit_with_core(
                 continue
             # Exactness outranks economy; a cap that a person gave is kept.
             if settings.max_control_points is not None or limits.most > LAST_CAP * len(data.plane):
-                raise
+                if not (inside & between).any():
+                    raise
+                # The drawn curves of a fold outrank the points between them.
+                notes = (*notes, _released_note(int((inside & between).sum())))
+                inside, limits = inside & ~between, first
+                continue
             if limits.longest < LONGEST:
                 # Under the cap, the points of the core come before short spans outside it.
                 limits = replace(limits, longest=LONGEST)
@@ -286,21 +295,26 @@ def _breaks(
 
 
 def _torn(core: _Core) -> NDArray[np.bool_]:
-    """Return (n,) the core's points to let go: of two that ask for a cliff, the one farther from the field."""
+    """Return (n,) the core's points to let go: of two that ask for a cliff, the one farther from the field.
+
+    No point of a fold's section curves is.
+    """
     data, coarse = core.data, core.coarse
-    torn = np.zeros(len(core.inside), bool)
-    if data.value.ndim > 1:
-        return torn
     chosen = np.flatnonzero(core.inside)
+    torn, loose = np.zeros(len(core.inside), bool), core.between[chosen] | (not core.parametric)
+    if not loose.any():
+        return torn
     plane = data.plane[chosen]
     misfit = data.value[chosen] - coarse.matrix(plane) @ smoothed(data, coarse, core.field).coefficients
+    misfit = misfit.reshape(len(chosen), -1)
+    size = np.linalg.norm(misfit, axis=1)
     first, second = neighbour_pairs(plane).T
     apart = data.unit * np.linalg.norm(plane[first] - plane[second], axis=1)
-    slope = np.abs(misfit[first] - misfit[second]) / np.maximum(apart, 1e-9)
+    slope = np.linalg.norm(misfit[first] - misfit[second], axis=1) / np.maximum(apart, 1e-9)
     for pair in np.argsort(-slope, kind="stable")[: int((slope > CLIFF).sum())]:
-        both = [int(first[pair]), int(second[pair])]
-        if not torn[chosen[both]].any():
-            torn[chosen[max(both, key=lambda k: abs(misfit[k]))]] = True
+        both = np.array([first[pair], second[pair]])
+        if loose[both].any() and not torn[chosen[both]].any():
+            torn[chosen[both[np.argmax(np.where(loose[both], size[both], -1.0))]]] = True
     return torn
 
 
@@ -309,6 +323,16 @@ def _torn_note(point: Message) -> Message:
         "fitting.core-points-contradict",
         "{point} contradicts a point very close to it: the core cannot meet both and passes through the other",
         point=point,
+    )
+    return note.with_severity("warning")
+
+
+def _released_note(count: int) -> Message:
+    note = message(
+        "fitting.points-between-sections-released",
+        "points between the sections, {count}: no surface meets them and the section curves exactly; "
+        "it passes through the curves, and the points are measured to it",
+        count=count,
     )
     return note.with_severity("warning")
 
@@ -370,19 +394,24 @@ def _skinned(
 
 
 def _lofted(space: TensorSpace, coefficients: Floats, core: _Core) -> Floats:
-    """Lay a parametric surface through its section curves, each curve through its points.
+    """Lay a parametric surface through its section curves, each through its points, then through those between.
 
     The hinges of a fold are sharper than the spacing of its sections: the regional field would round them off
-    between the sections, where the curves on both sides carry them on.
+    between the sections, where the curves on both sides carry them on. A point between them says nothing about the
+    curves: what it asks for is a change of its own surroundings.
     """
-    data, inside, lines = core.data, core.inside, core.lines.u
+    data, lines = core.data, core.lines.u
     through = bspline.collocation(space.knots_u, space.degree, lines)
     net = coefficients.reshape(*space.shape, -1)
     start = np.einsum("ki,ijc->kjc", through, net).reshape(len(lines) * space.shape[1], *coefficients.shape[1:])
     spread = lofted(space, lines)
-    value = data.value[inside]
-    acting = space.matrix(data.plane[inside]) @ spread
-    return np.asarray(spread @ (start + minimum_norm_correction(acting, value - acting @ start)))
+    matrix, value = space.matrix(data.plane[core.inside]), data.value[core.inside]
+    drawn = np.flatnonzero(~core.between[core.inside])
+    acting = csr_array(matrix[drawn] @ spread)
+    curves = np.asarray(spread @ (start + minimum_norm_correction(acting, value[drawn] - acting @ start)))
+    if len(drawn) == len(value):
+        return curves
+    return curves + minimum_norm_correction(matrix, value - matrix @ curves)
 
 
 def _inner(edges: tuple[float, float], knots: Floats) -> list[float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from truth import paper_arrangement
+from truth import EASTING, NORTHING, fold_at, folded, paper_arrangement
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.checks.check import CORE_LIMIT
@@ -48,6 +48,60 @@ def test_points_that_a_fold_misses_count_as_approximated(monkeypatch):
     assert surface.partition.periphery == missed
     assert surface.core.sum() == len(surface.points) - missed
     assert "does not meet" in str(surface.partition.reason)
+
+
+def drilled_between(seed: int, share: float) -> PointSet:
+    """A fold of which a share of the points was moved along it to places between its sections."""
+    rng = np.random.default_rng(seed)
+    lines = int(rng.integers(4, 9))
+    drawn = folded(lines, int(rng.integers(25, 50)), seed=seed)
+    count = int(share * len(drawn))
+    moved = rng.choice(len(drawn), count, replace=False)
+    xyz, section = drawn.xyz.copy(), drawn.section.astype("U8")
+    xyz[moved] = fold_at(rng.random(count), rng.uniform(0, 60 * (lines - 1), count)) + np.array(
+        (EASTING, NORTHING, 500)
+    )
+    section[moved] = ""
+    return PointSet(xyz + rng.normal(0, 0.05, xyz.shape), section=section, kind="section")
+
+
+@pytest.mark.parametrize("share", [0.1, 0.35, 0.6])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_fold_with_many_points_between_its_sections_is_fitted(seed, share):
+    points = drilled_between(seed, share)
+    surface = fit_horizon(points)
+    residuals = np.abs(surface.accuracy.residuals)
+    assert surface.frame == "sections"
+    assert residuals[points.section != ""].max() <= CORE_LIMIT
+    assert residuals[surface.core].max() <= CORE_LIMIT
+    assert surface.core.sum() == (residuals <= CORE_LIMIT).sum()
+
+
+def stacked() -> PointSet:
+    """A fold with points between two sections that stand one above the other across it."""
+    normal = np.array([220.0, 0.0, 667.0]) / np.hypot(220.0, 667.0)
+    place = fold_at(np.full(1, 0.5), np.full(1, 90.0)) + np.array((EASTING, NORTHING, 500))
+    drawn = folded(4, 30, seed=1)
+    xyz = np.concatenate([drawn.xyz, place + np.linspace(-5, 5, 12)[:, None] * normal])
+    return PointSet(xyz, section=[*drawn.section, *[""] * 12], kind="section")
+
+
+@pytest.mark.parametrize(
+    ("cliff", "code"),
+    [(0.5, "fitting.core-points-contradict"), (np.inf, "fitting.points-between-sections-released")],
+)
+def test_section_curves_outrank_points_between_them_that_contradict_each_other(cliff, code, monkeypatch):
+    # Where no two points ask for a cliff, none is let go alone: all between the sections are.
+    monkeypatch.setattr("geofit.fitting.core.CLIFF", cliff)
+    points = stacked()
+    surface = fit_horizon(points, FitSettings(max_control_points=1500))
+    residuals = np.abs(surface.accuracy.residuals)
+    drawn = points.section != ""
+    assert residuals[drawn].max() <= CORE_LIMIT
+    assert surface.core[drawn].all()
+    assert not surface.core.all()
+    assert surface.core.sum() == (residuals <= CORE_LIMIT).sum()
+    assert code in [note.code for note in surface.accuracy.notes]
 
 
 def cloud(shift=0.0):
