@@ -6,7 +6,7 @@ there; let the core pass through its points; approximate the periphery with what
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -119,10 +119,11 @@ def fit_with_core(
     stage: Callable[[str, float], None],
     slopes: Slopes | None = None,
     chosen: Choice | None = None,
+    sketched: Sequence[FieldChoice] = (),
 ) -> Net:
     """Fit a surface whose core passes through its points.
 
-    ``chosen`` is the field to take; None: it is chosen by these points.
+    ``chosen`` is the field to take; None: it is chosen by these points, from ``sketched`` fields on if there are any.
 
     Raises
     ------
@@ -136,7 +137,7 @@ def fit_with_core(
     core = (scaled[0], scaled[1], scaled[2], scaled[3])
     degree, most = degree_for(len(data.plane)), cap_for(settings, len(data.plane), A_POINT)
     stage("field", 0.25)
-    field, coarse = choose_field(data, settings, most) if chosen is None else chosen
+    field, coarse = choose_field(data, settings, most, sketched) if chosen is None else chosen
     automatic = settings.core == "auto" and settings.smoothing == "auto" and not parametrization.parametric
     little = min(settings.interior_tolerance, LITTLE * field.spread)
     drawn = float(np.mean(parametrization.section[kept][inside] != "")) >= DRAWN

@@ -10,6 +10,7 @@ The field is solved on a space that reaches beyond the study area, where no data
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -21,6 +22,7 @@ from geofit.data.errors import FitError
 from geofit.data.long_arrays import BLOCK, Rows, blocks, covariance, everywhere, inverse_squares, spread, sum_squares
 from geofit.data.messages import message
 from geofit.fitting.likelihood import FINEST, UNSOLVABLE, Likelihood, Optimum, Slope, plane_coefficients
+from geofit.fitting.optimum import EVERY, maximize, maximize_over_noise
 from geofit.fitting.slopes import Slopes
 from geofit.splines import bspline
 from geofit.splines.matern import MaternPrecision
@@ -53,19 +55,10 @@ ENOUGH = 16
 _NARROW = 0.05
 #: How far the field's space reaches beyond the area, in units, and how fast its spans grow there.
 _BEYOND, _GROWTH = 1.5, 1.5
-#: Starts of the search: kappa per unit, and log rho.
-_KAPPAS, _LOG_RHOS = (0.1, 0.7), (-10.0, -6.0, -2.0)
-#: First steps from there: to the next start, whose value is known.
-_BETWEEN = (math.log(_KAPPAS[1] / _KAPPAS[0]), _LOG_RHOS[1] - _LOG_RHOS[0], 0.0, 0.0)
+#: Starts of the search: kappa per unit, and rho.
+_KAPPAS, _RHOS = (0.1, 0.7), (5e-5, 2e-3, 0.1)
 #: The smoothness to try where one is the best of those that are always compared.
 SMOOTHER = {3: 6}
-#: First steps from the one to the other.
-_NEAR = (0.35, 1.5, 0.0, 0.0)
-#: Stretches that the search for a direction starts from.
-_STRETCHES = ((0.0, 0.0), (0.2, 0.0), (-0.2, 0.0), (0.0, 0.2), (0.0, -0.2))
-#: Rounds of the search over kappa and rho, over all parameters, and on a finer space; first steps there: the range is
-#: known by then, only the noise is less on finer spans.
-_FIRST, _LAST, _AGAIN, _NEARBY = 4, 3, 5, (0.0, 1.5, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -261,17 +254,18 @@ def choose_covariance(
         return Likelihood(wide, alpha, band, right, square, slope, count)
 
     few = len(plane) < ENOUGH
-    log_rho = None if smoothing is None else math.log(smoothing)
     if known:
-        free = 2 if log_rho is None else 0
         found, rival = [], math.inf
         for guess in known:
-            start = (math.log(guess.kappa), math.log(guess.rho), *guess.stretch)
-            smoother = guess.alpha > space.degree
-            found.append(likelihood(guess.alpha).best([start], free, _AGAIN, _NEARBY, math.inf if smoother else rival))
+            smoother, judge = guess.alpha > space.degree, likelihood(guess.alpha)
+            start = judge.parameters(guess.kappa, guess.rho, guess.stretch)
+            if smoothing is None:
+                found.append(maximize_over_noise(judge, start, math.inf if smoother else rival))
+            else:
+                found.append(judge.optimum(start))
             rival = rival if smoother else min(rival, found[-1].value)
     else:
-        found = _search(likelihood, space.degree, len(plane), log_rho)
+        found = _search(likelihood, space.degree, len(plane), smoothing)
     found = sorted(found, key=lambda one: one.value)
     if found[0].value >= UNSOLVABLE:
         text = message(
@@ -293,31 +287,23 @@ def choose_covariance(
     return [(field, value) for field, value in fields if value < UNSOLVABLE]
 
 
-def _search(likelihood: Callable[[int], Likelihood], degree: int, n: int, log_rho: float | None) -> list[Optimum]:
-    """Compare the smoothnesses without a direction, give the better one its direction, and try a smoother one."""
+def _search(likelihood: Callable[[int], Likelihood], degree: int, n: int, rho: float | None) -> list[Optimum]:
+    """Compare the smoothnesses, and try a smoother one where the best of them is."""
     few = n < ENOUGH
     alphas = {3: (2,) if few else (3, 2), 2: (2,)}.get(degree, (1,))
-    logs, free = (_LOG_RHOS, 2) if log_rho is None else ((log_rho,), 1)
-    found: list[tuple[Optimum, Likelihood]] = []
+    free = [k for k in EVERY[: 2 if few else 4] if k != 1 or rho is None]
+    found: list[Optimum] = []
     for alpha in alphas:
-        judge = likelihood(alpha)
-        kappas = _KAPPAS if alpha == 2 else _KAPPAS[-1:]
-        starts = [(math.log(kappa), log, 0.0, 0.0) for kappa in kappas for log in logs]
-        rival = found[0][0].value if found else math.inf
-        found.append((judge.best(starts, free, _FIRST, _BETWEEN, rival), judge))
-    found.sort(key=lambda one: one[0].value)
-    best, judge = found[0]
-    if few or best.value >= UNSOLVABLE:
-        return [best]
-    starts = [(math.log(best.kappa), math.log(best.rho), *stretch) for stretch in _STRETCHES]
-    best = min(best, judge.best(starts, 0 if log_rho is not None else 4, _LAST), key=lambda one: one.value)
-    fields = [best, *(replace(other, stretch=best.stretch) for other, _ in found[1:])]
-    if best.alpha in SMOOTHER and log_rho is None:
-        alpha = SMOOTHER[best.alpha]
-        kappa, rho = (math.log(one) for one in as_smooth(best.kappa, best.rho, best.alpha, alpha))
-        turned = [(kappa, rho, *stretch) for stretch in (best.stretch, (0.0, 0.0))]
-        fields.append(likelihood(alpha).best(turned, free, _FIRST, _NEAR))
-    return fields
+        judge, kappas = likelihood(alpha), _KAPPAS if alpha == 2 else _KAPPAS[-1:]
+        starts = itertools.product(kappas, _RHOS if rho is None else (rho,))
+        places = [judge.parameters(*start, (0.0, 0.0)) for start in starts]
+        found.append(maximize(judge, places, free, found[0].value if found else math.inf))
+    best = min(found, key=lambda one: one.value)
+    if best.value < UNSOLVABLE and best.alpha in SMOOTHER and rho is None:
+        judge = likelihood(SMOOTHER[best.alpha])
+        start = as_smooth(best.kappa, best.rho, best.alpha, judge.alpha)
+        found.append(maximize(judge, [judge.parameters(*start, best.stretch)], free))
+    return found
 
 
 def widened_space(space: TensorSpace) -> TensorSpace:

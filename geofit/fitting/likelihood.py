@@ -22,38 +22,40 @@ from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 
 from geofit.splines import bspline
+from geofit.splines.blocks import inverse_band
+from geofit.splines.couplings import dyads, from_band
 from geofit.splines.matern import MaternPrecision
-from geofit.splines.tensor import TensorSpace
+from geofit.splines.tensor import TensorSpace, band_times
 
 __all__ = ["Likelihood", "Optimum", "Slope", "plane_coefficients"]
 
 Floats = NDArray[np.float64]
+_Key = tuple[float, float, float, float]
 
-#: Range of the logarithm of kappa per unit of the points' spacing, and of that of rho.
+#: Range of the logarithm of the inverse range per unit of the points' spacing, and of that of rho.
 LOG_KAPPA, LOG_RHO = (math.log(0.003), math.log(4.0)), (-16.0, 6.0)
 #: How much farther down log rho goes for fields whose form is applied twice.
 SMALLER = 12.0
-#: Largest part of the stretch: beyond it, sections alone can talk the likelihood into ridges that no hole between them
-#: has seen.
-STRETCH = 0.3
-#: Least kappa per unit of the fields that are bent less than a thin plate between their points, for each time that
-#: their form is applied: of a longer range they run on as parabolas where no points are.
-CURVED = 0.5
+#: Largest part of the stretch, which its prior hardly ever lets it reach.
+STRETCH = 1.0
+#: Least inverse range, in the direction of the longest, of the fields that are bent less than a thin plate between
+#: their points, for each time that their form is applied: of a longer range they run on as parabolas beyond the points.
+CURVED = 0.4
+#: Size of a stretch below which the direction of the longest range hardly counts: keeps the likelihood smooth there.
+ROUND = 0.05
 #: (kappa * span)^(2 order) below which the form is singular to working precision.
 _LEAST = 1e-11
 #: No elevation is known better than this, metres: keeps the likelihood finite on exact planes.
 FINEST = 1e-4
-#: Standard deviation of each part of the stretch a priori.
-DOUBT = 0.5
+#: Standard deviation of each part of the stretch a priori: sections alone could talk the likelihood into ridges that no
+#: hole between them has seen.
+DOUBT = 0.25
 #: Value of parameters whose system has no solution; finite, for the search.
 UNSOLVABLE = 1e12
 #: Width of the slope's prior: the rise over the points' extent relative to the field's own deviation, squared.
 RISE = 0.25
 #: How many times that the variance of the slope is tried.
 _WIDER = np.exp(np.arange(0.0, 14.5))
-#: First steps along each parameter, the least gain that another round of steps is worth, and how far behind a rival
-#: a search is given up.
-STEPS, SETTLED, BEHIND = (0.7, 1.5, 0.12, 0.12), 0.5, 60.0
 
 
 @dataclass(frozen=True)
@@ -104,6 +106,15 @@ def plane_coefficients(space: TensorSpace) -> Floats:
     return np.asarray(stacked.reshape(space.size, 3))
 
 
+@dataclass(frozen=True, eq=False)
+class _Solved:
+    """The parameters evaluated last, the factor of P, and K times the planes with what P gives for heights and it."""
+
+    key: _Key
+    lower: Floats
+    columns: tuple[Floats, Floats, Floats]
+
+
 class Likelihood:
     """Restricted likelihood of the fields of one smoothness on a space of even spans.
 
@@ -139,32 +150,99 @@ class Likelihood:
         self.least = max(least, math.log(_LEAST) / (2 * self.precision.order) - math.log(span))
         # kappa^(2 nu) is part of rho.
         self.rhos = (LOG_RHO[0] - SMALLER * (self.precision.power - 1), LOG_RHO[1])
-        self._known: dict[tuple[float, ...], tuple[float, float, float]] = {}
-        self._priors: dict[tuple[float, ...], tuple[Floats, Floats, float]] = {}
+        self._known: dict[_Key, tuple[float, float, float]] = {}
+        self._prior_of: tuple[tuple[float, ...], tuple[Floats, Floats, float]] | None = None
+        self._solved: _Solved | None = None
 
     def __call__(self, parameters: Floats) -> float:
-        """Return -2 log of the restricted likelihood for (log kappa, log rho, p, q), but for a constant of the data.
+        """Return -2 log of the restricted likelihood of parameters, but for a constant of the data.
 
-        A prior holds the stretch where few points say little of it.
+        These are (4,): the logarithms of the inverse range in the direction of the longest, kappa but for the stretch,
+        and of rho, and both parts of the stretch. A prior holds the stretch where few points say little of it.
         """
-        key = tuple(float(x) for x in parameters)
+        key = _key_of(parameters)
         if key not in self._known:
             self._known[key] = self._evaluate(key)
         return self._known[key][0] + (key[2] / DOUBT) ** 2 + (key[3] / DOUBT) ** 2
 
-    def _prior(self, log_kappa: float, stretch: tuple[float, float]) -> tuple[Floats, Floats, float]:
-        """Return E, E times the planes, and log|E|."""
-        key = (log_kappa, *stretch)
-        if key not in self._priors:
-            energy = self.precision.band(math.exp(log_kappa), stretch)
-            bent = self.precision.times_planes(math.exp(log_kappa), stretch) @ self.slope.directions
-            self._priors = {key: (energy, bent, self.precision.logdet(math.exp(log_kappa), stretch))}
-        return self._priors[key]
+    def parameters(self, kappa: float, rho: float, stretch: tuple[float, float]) -> Floats:
+        """Return the (4,) parameters of a field, as near as their bounds let them be.
 
-    def _evaluate(self, key: tuple[float, ...]) -> tuple[float, float, float]:
-        rho = math.exp(key[1])
+        Where the range is cut, the field keeps its variance, which is proportional to 1 / (rho kappa^(2 nu)).
+        """
+        low, high = np.array(self.bounds()).T
+        stretch = tuple(np.clip(stretch, low[2:], high[2:]).tolist())
+        longest = math.log(kappa) - _widening(*stretch)
+        cut = min(max(longest, low[0]), high[0])
+        log_rho = math.log(rho) - 2 * (self.alpha - 1) * (cut - longest)
+        return np.array([cut, min(max(log_rho, low[1]), high[1]), *stretch])
+
+    def optimum(self, parameters: Floats) -> Optimum:
+        """Return what the likelihood finds for given parameters."""
+        value, key = self(parameters), _key_of(parameters)
+        _, variance, hold = self._known[key]
+        return Optimum(self.alpha, _kappa(key), math.exp(key[1]), key[2:], value, variance, hold)
+
+    def gradient(self, parameters: Floats) -> Floats:
+        """Return the (4,) derivatives of the value by the parameters; nan where the system has no solution.
+
+        Notes
+        -----
+        With S = (F' V^-1 F)^-1, the field's own coefficients x, and those of the planes that the noise leaves them, Y,
+
+            d(-2 l) = tr(G dK) - tr(K^-1 dK),   G = P^-1 + Y S Y' + x x' / s^2,
+
+        which asks for the entries of the inverses near the diagonal only (K. Takahashi, J. Fagan, M. Chin, 1973;
+        S. P. Smith, J. Comput. Graph. Stat. 4, 1995, 134-147). The planes and the hold of their slope are the best ones
+        for each set of parameters, and add nothing.
+        """
+        key = _key_of(parameters)
+        self(parameters)
+        if self._solved is None or self._solved.key != key:
+            self._evaluate(key)
+        _, variance, hold = self._known[key]
+        if self._solved is None or not math.isfinite(variance):
+            return np.full(4, np.nan)
+        kappa, rho, stretch, (held, free, drifted) = _kappa(key), math.exp(key[1]), key[2:], self._solved.columns
+        precision, count, prior = self.precision, self.columns.shape[1], self.slope.precision(hold)
+        covariance = np.linalg.inv(self.drift.T @ held - held.T @ drifted + prior)
+        slopes = covariance @ (held.T @ free + (prior @ self.slope.aim)[:, None])
+        planes, total = self.drift - drifted, free + drifted @ slopes
+        own = free - planes @ slopes
+        # At its floor the misfit is constant.
+        weight = 1 / variance if variance * self.free > self.floor else 0.0
+        near, shape = inverse_band(self._solved.lower), precision.space.shape
+        columns = np.column_stack([math.sqrt(weight) * own, planes @ np.linalg.cholesky(count * covariance)])
+        couplings = count * from_band(near, shape, precision.reach)
+        couplings += dyads(columns.reshape(*shape, -1), precision.reach)
+        by_form = rho * precision.trace_slopes(kappa, stretch, couplings)
+        by_form -= count * precision.logdet_slopes(kappa, stretch)
+        # K acts on x and Y as A' W A does on what they leave to the noise.
+        taken = band_times(self.band, np.column_stack([total, drifted]))
+        by_rho = weight * (own * (self.columns - taken[:, :count])).sum()
+        by_rho += count * ((covariance * (planes.T @ taken[:, count:])).sum() - _trace(near, self.band))
+        if self.held:
+            off = slopes[1:, 0] - self.slope.aim[1:]
+            by_hold = weight * hold * (off @ off) + (covariance * prior).sum() - len(off)
+            by_rho += by_hold
+            by_form[0] += 2 * (self.alpha - 1) * by_hold
+        turned = np.array(stretch)
+        by_stretch = by_form[1:] + by_form[0] * turned / (2 * math.hypot(*stretch, ROUND)) + 2 * turned / DOUBT**2
+        return np.array([by_form[0], by_rho, *by_stretch])
+
+    def _prior(self, kappa: float, stretch: tuple[float, float]) -> tuple[Floats, Floats, float]:
+        """Return E, E times the planes, and log|E|; the last ones are kept."""
+        key = (kappa, *stretch)
+        if self._prior_of is None or self._prior_of[0] != key:
+            energy = self.precision.band(kappa, stretch)
+            bent = self.precision.times_planes(kappa, stretch) @ self.slope.directions
+            self._prior_of = key, (energy, bent, self.precision.logdet(kappa, stretch))
+        return self._prior_of[1]
+
+    def _evaluate(self, key: _Key) -> tuple[float, float, float]:
+        kappa, rho = _kappa(key), math.exp(key[1])
         try:
-            energy, bent, determinant = self._prior(key[0], (key[2], key[3]))
+            energy, bent, determinant = self._prior(kappa, key[2:])
             system = rho * energy
             system[: len(self.band)] += self.band
             lower = cholesky_banded(system, lower=True, overwrite_ab=True, check_finite=False)
@@ -174,12 +252,13 @@ class Likelihood:
         solved = cho_solve_banded((lower, True), np.column_stack([self.columns, held]), check_finite=False)
         count = self.columns.shape[1]
         free, drifted = solved[:, :count], solved[:, count:]
+        self._solved = _Solved(key, lower, (held, free, drifted))
         # Differences of large numbers are avoided: A' W A = P - K, and K acts on planes through kappa alone.
         moment, cross = self.drift.T @ held - held.T @ drifted, held.T @ free
         square = self.square - float((self.columns * free).sum())
         size = len(self.right)
         value = count * (2 * float(np.log(lower[0]).sum()) - determinant - size * math.log(rho))
-        over, variance, hold = self._over_planes(moment, cross, square, *self._holds(math.exp(key[0]), rho))
+        over, variance, hold = self._over_planes(moment, cross, square, *self._holds(kappa, rho))
         return (value + over, variance, hold) if over < UNSOLVABLE else (UNSOLVABLE, math.nan, 0.0)
 
     def _holds(self, kappa: float, rho: float) -> tuple[Floats, Floats]:
@@ -214,59 +293,25 @@ class Likelihood:
         return float(value[best]) if sign[best] > 0 else UNSOLVABLE, float(misfit[best]) / self.free, float(hold[best])
 
     def bounds(self) -> list[tuple[float, float]]:
-        """Return the bounds of (log kappa, log rho, p, q)."""
+        """Return the bounds of the parameters."""
         return [(self.least, LOG_KAPPA[1]), self.rhos, (-STRETCH, STRETCH), (-STRETCH, STRETCH)]
 
-    def best(
-        self,
-        starts: list[tuple[float, float, float, float]],
-        free: int,
-        rounds: int,
-        steps: tuple[float, ...] = STEPS,
-        rival: float = math.inf,
-    ) -> Optimum:
-        """Search from the best of several starts, along one of the first ``free`` parameters after the other.
 
-        Range and noise relative to the field hardly depend on each other, nor the stretch on both: a parabola along
-        each leads near the optimum, where the gradient by differences would ask for as many values a step. ``rival`` is
-        the value of another smoothness.
-        """
-        low, high = np.array(self.bounds()).T
-        at: Floats = min((np.clip(np.array(one), low, high) for one in starts), key=self)
-        size = np.array(steps)
-        for _ in range(rounds):
-            before = self(at)
-            # The noise first: it needs no new E.
-            for k in sorted(range(free), key=lambda k: k != 1):
-                if size[k] > 0 and self(at) < min(UNSOLVABLE, rival + BEHIND):
-                    at, size[k] = self._along(at, k, size[k])
-            if before - self(at) < SETTLED:
-                break
-        value, (kappa, rho) = self(at), np.exp(at[:2]).tolist()
-        _, variance, hold = self._known[tuple(float(x) for x in at)]
-        return Optimum(self.alpha, kappa, rho, (float(at[2]), float(at[3])), value, variance, hold)
+def _key_of(parameters: Floats) -> _Key:
+    longest, log_rho, p, q = parameters.tolist()
+    return longest, log_rho, p, q
 
-    def _along(self, at: Floats, k: int, step: float) -> tuple[Floats, float]:
-        """Move one parameter to the vertex of a parabola through three values; return the next step too."""
-        low, high = self.bounds()[k]
 
-        def moved(by: float) -> Floats:
-            place = at.copy()
-            place[k] = min(max(at[k] + by, low), high)
-            return place
+def _kappa(key: _Key) -> float:
+    return math.exp(key[0] + _widening(*key[2:]))
 
-        sides = [moved(-step), moved(step)]
-        (left, middle, right), x = (self(sides[0]), self(at), self(sides[1])), (sides[0][k], at[k], sides[1][k])
-        places = [at, *sides]
-        # Divided differences: the sides may be nearer where a bound cuts them.
-        before = (middle - left) / (x[1] - x[0]) if x[1] > x[0] else None
-        after = (right - middle) / (x[2] - x[1]) if x[2] > x[1] else None
-        if before is not None and after is not None and after > before:
-            curvature = 2 * (after - before) / (x[2] - x[0])
-            slope = (before * (x[2] - x[1]) + after * (x[1] - x[0])) / (x[2] - x[0])
-            if slope**2 / (2 * curvature) > SETTLED / 8:
-                places.append(moved(float(np.clip(-slope / curvature, -2 * step, 2 * step))))
-        else:
-            places.append(moved(2 * step if right < left else -2 * step))
-        found = min(places, key=self)
-        return found, float(np.clip(abs(found[k] - at[k]), step / 4, 2 * step))
+
+def _widening(p: float, q: float) -> float:
+    """Return the logarithm of kappa to the inverse range in the direction of the longest, for a stretch."""
+    return (math.hypot(p, q, ROUND) - ROUND) / 2
+
+
+def _trace(one: Floats, other: Floats) -> float:
+    """Return the trace of the product of two symmetric matrices, of the second of which only a band is not zero."""
+    products = (one[: len(other)] * other).sum(axis=1)
+    return float(2 * products.sum() - products[0])

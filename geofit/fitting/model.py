@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -14,9 +14,11 @@ from geofit.data.accuracy import Conflict, Partition
 from geofit.data.allowance import accuracies
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
+from geofit.data.threads import one_thread
 from geofit.fitting.active_points import gather_points
 from geofit.fitting.assemble import patches_of
 from geofit.fitting.core import fit_with_core
+from geofit.fitting.field import FieldChoice
 from geofit.fitting.net import Net, approximate_all
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.resolution import Choice
@@ -62,15 +64,20 @@ class Problem:
         return accuracies(self.points, self.sources)
 
     def fit(
-        self, active: NDArray[np.bool_], stage: Callable[[str, float], None], chosen: Choice | None = None
+        self,
+        active: NDArray[np.bool_],
+        stage: Callable[[str, float], None],
+        chosen: Choice | None = None,
+        sketched: Sequence[FieldChoice] = (),
     ) -> Model:
         """Return the control net that meets the core's points and approximates the other active ones.
 
-        ``chosen`` is the field to take; None: it is chosen by these points.
+        ``chosen`` is the field to take; None: it is chosen by these points, from ``sketched`` fields on if these points
+        have given any.
         """
         if self.split.core is None:
             given = gather_points(self.accuracy, self.parametrization, self.settings, active, None, self.slopes)
-            return Model(self, approximate_all(given, self.settings, stage, chosen))
+            return Model(self, approximate_all(given, self.settings, stage, chosen, sketched))
         return Model(
             self,
             fit_with_core(
@@ -83,6 +90,7 @@ class Problem:
                 stage,
                 self.slopes,
                 chosen,
+                sketched,
             ),
         )
 
@@ -142,7 +150,9 @@ class Model:
         """Cut the surface into patches along the core's edges."""
         net, interpolated = self.net, self.problem.split.core is not None
         frame = self.problem.parametrization.frame
-        patches = patches_of(net.space, self.control(), net.core, frame, net.unit, net.lines, interpolated)
+        # The same last digits whether a fit cuts its patches or a manual edit.
+        with one_thread():
+            patches = patches_of(net.space, self.control(), net.core, frame, net.unit, net.lines, interpolated)
         return tuple(replace(patch, weights=self.weights.get(patch.name)) for patch in patches)
 
     def patch_surface(self) -> PatchSurface:

@@ -7,7 +7,7 @@ core, whose net :mod:`geofit.fitting.core` makes.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -106,15 +106,21 @@ def smoothed(data: Data, space: TensorSpace, field: FieldChoice) -> Smoothed:
     return smooth(space, field, data.plane, data.value, weight, data.trend, data.slopes)
 
 
-def approximate_all(data: Data, settings: FitSettings, stage: Stage, chosen: Choice | None = None) -> Net:
+def approximate_all(
+    data: Data,
+    settings: FitSettings,
+    stage: Stage,
+    chosen: Choice | None = None,
+    sketched: Sequence[FieldChoice] = (),
+) -> Net:
     """Fit a surface without a core: the field, brought within the interior tolerance of sparse points.
 
-    ``chosen`` is the field to take; None: it is chosen by these points.
+    ``chosen`` is the field to take; None: it is chosen by these points, from ``sketched`` fields on if there are any.
     """
     n = len(data.plane)
     most = cap_for(settings, n)
     stage("field", 0.25)
-    field, base = choose_field(data, settings, most) if chosen is None else chosen
+    field, base = choose_field(data, settings, most, sketched) if chosen is None else chosen
     start = smoothed(data, base, field)
     stage("periphery", 0.5)
     periphery = Periphery(data, np.ones(n, bool), None, field, settings, most, refit=False)

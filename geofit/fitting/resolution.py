@@ -14,11 +14,11 @@ import numpy as np
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
 from geofit.fitting.field import FieldChoice, choose_covariance
-from geofit.fitting.likelihood import BEHIND
+from geofit.fitting.optimum import BEHIND
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
-__all__ = ["EVEN", "Choice", "choose_field", "even_space", "longest_span"]
+__all__ = ["EVEN", "Choice", "choose_field", "even_space", "longest_span", "sketched_fields"]
 
 Rectangle = tuple[float, float, float, float]
 
@@ -65,17 +65,31 @@ def even_space(area: Rectangle, span: float, degree: int, most: int) -> TensorSp
     )
 
 
-def choose_field(data: Data, settings: FitSettings, most: int) -> Choice:
+def sketched_fields(data: Data, smoothing: float | None = None) -> tuple[FieldChoice, ...]:
+    """Return the best field of each smoothness on few control points, where a value of the likelihood costs little.
+
+    Those far behind are left out: finer spans have never yet made up for more.
+    """
+    some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
+    space = even_space(data.area, EVEN, degree_for(len(data.plane)), SKETCH)
+    found = choose_covariance(space, data.plane[some], data.value[some], data.noise[some], smoothing, (), data.trend)
+    return tuple(field for field, value in found if value < found[0][1] + BEHIND)
+
+
+def choose_field(data: Data, settings: FitSettings, most: int, sketched: Sequence[FieldChoice] = ()) -> Choice:
     """Choose the regional field (:func:`geofit.fitting.field.choose_covariance`) and the even space that resolves it.
 
-    Smoothness and direction are found on few control points, where a value of the likelihood costs little, range and
+    Smoothness, range and direction are found on few control points (``sketched``, where that is done already), the
     noise on the first level. Its spans are lengthened while the likelihood gains by it; where it gains nothing, they
     are shortened, down to those that points in groups resolve.
     """
     degree, noise = degree_for(len(data.plane)), data.noise
     given = None if settings.smoothing == "auto" else float(settings.smoothing)
     limit = min(most, LAST_LEVEL)
-    space, sketch = (even_space(data.area, EVEN, degree, size) for size in (min(FIRST_LEVEL, limit), SKETCH))
+    space = even_space(data.area, EVEN, degree, min(FIRST_LEVEL, limit))
+    known = tuple(sketched)
+    if not known and even_space(data.area, EVEN, degree, SKETCH).size < space.size:
+        known = sketched_fields(data, given)
 
     def on(space: TensorSpace, known: Sequence[FieldChoice]) -> list[Level]:
         found = choose_covariance(space, data.plane, data.value, noise, given, known, data.trend)
@@ -94,12 +108,6 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> Choice:
                 best = _lengthened(best, between, on)
         return best
 
-    known: list[FieldChoice] = []
-    if sketch.size < space.size:
-        some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
-        found = choose_covariance(sketch, data.plane[some], data.value[some], noise[some], given, (), data.trend)
-        # Finer spans have never yet made up for more.
-        known = [one for one, value in found if value < found[0][1] + BEHIND]
     firsts = on(space, known)
     # What is relief to a rougher field on finer spans may pass for noise about a smoother one.
     rivals = [

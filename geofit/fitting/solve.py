@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from geofit.data.errors import ExactnessError
 from geofit.data.messages import message
+from geofit.fitting.field import FieldChoice
 from geofit.fitting.model import Model, Problem
 from geofit.fitting.robust import fit_robustly
 from geofit.fitting.split import Split
@@ -20,7 +22,7 @@ __all__ = ["solve"]
 CORRECTIONS = 4
 
 
-def solve(problem: Problem, stage: Stages) -> Model:
+def solve(problem: Problem, stage: Stages, sketched: Sequence[FieldChoice] = ()) -> Model:
     """Fit the control net of a horizon.
 
     A core that was found, not asked for, and that no control net can meet is approximated with the rest. Points between
@@ -32,6 +34,8 @@ def solve(problem: Problem, stage: Stages) -> Model:
         The points, where they stand, and which of them are the core.
     stage : Stages
         Hears of the stages.
+    sketched : sequence of FieldChoice
+        What :func:`geofit.fitting.sources.with_noise_of_sources` has found of these points' field.
 
     Raises
     ------
@@ -41,7 +45,7 @@ def solve(problem: Problem, stage: Stages) -> Model:
     settings, parametrization = problem.settings, problem.parametrization
     placed = problem.kept & parametrization.parametrized
     try:
-        model = problem.fit(placed, stage)
+        model = problem.fit(placed, stage, sketched=sketched if placed.sum() == problem.kept.sum() else ())
     except ExactnessError as error:
         if settings.core != "auto":
             raise

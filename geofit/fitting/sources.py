@@ -9,6 +9,7 @@ they scatter by more is noise. The kind nearest to the rock is never judged: its
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,7 +21,7 @@ from geofit.fitting.active_points import Data, degree_for, gather_points
 from geofit.fitting.conflicts import trust_of
 from geofit.fitting.field import ENOUGH, FieldChoice, choose_covariance
 from geofit.fitting.model import Problem
-from geofit.fitting.resolution import EVEN, FIRST_LEVEL, GAIN, SKETCH, SKETCHED, even_space
+from geofit.fitting.resolution import EVEN, FIRST_LEVEL, GAIN, SKETCH, SKETCHED, even_space, sketched_fields
 from geofit.splines.tensor import TensorSpace
 
 __all__ = ["with_noise_of_sources"]
@@ -42,10 +43,11 @@ class _Trial:
     field: FieldChoice
 
 
-def with_noise_of_sources(problem: Problem) -> Problem:
+def with_noise_of_sources(problem: Problem) -> tuple[Problem, tuple[FieldChoice, ...]]:
     """Return the problem with the noise of the kinds of points that scatter more than those nearer to the rock.
 
-    Folded surfaces, and a smoothing that is given, leave nothing to judge.
+    Second come the fields of a sketch of its points, where these had to be found and still apply. Folded surfaces, and
+    a smoothing that is given, leave nothing to judge.
 
     Notes
     -----
@@ -55,20 +57,21 @@ def with_noise_of_sources(problem: Problem) -> Problem:
     """
     kinds, kept, settings = problem.points.labels["kind"], problem.kept, problem.settings
     if len(kinds.table) < 2 or settings.smoothing != "auto" or problem.parametrization.parametric:
-        return problem
+        return problem, ()
     some = np.flatnonzero(kept)[:: max(int(kept.sum()) // SKETCHED, 1)]
     judged, found = _to_judge(kinds[some], problem.accuracy[some]), {}
     if not judged:
-        return problem
+        return problem, ()
     data = gather_points(problem.accuracy, problem.parametrization, settings, kept, problem.split)
-    for size in (SKETCH, FIRST_LEVEL):
-        found = _found(even_space(data.area, EVEN, degree_for(len(data.plane)), size), data, judged)
+    sketched = sketched_fields(data)
+    for size, known in ((SKETCH, sketched), (FIRST_LEVEL, ())):
+        found = _found(even_space(data.area, EVEN, degree_for(len(data.plane)), size), data, judged, known)
         judged = {kind: own for kind, own in judged.items() if kind in found}
     if not found:
-        return problem
+        return problem, sketched
     notes = (_note(kind, noise) for kind, noise in found.items())
     parametrization = replace(problem.parametrization, notes=(*problem.parametrization.notes, *notes))
-    return replace(problem, parametrization=parametrization, sources=found)
+    return replace(problem, parametrization=parametrization, sources=found), ()
 
 
 def _note(kind: str, noise: float) -> Message:
@@ -92,14 +95,19 @@ def _to_judge(kinds: Labels, accuracy: Floats) -> dict[str, NDArray[np.bool_]]:
     return judged
 
 
-def _found(space: TensorSpace, data: Data, judged: dict[str, NDArray[np.bool_]]) -> dict[str, float]:
-    """Return the noise, in metres, of the kinds that the likelihood on a space gives more than the others."""
+def _found(
+    space: TensorSpace, data: Data, judged: dict[str, NDArray[np.bool_]], known: Sequence[FieldChoice]
+) -> dict[str, float]:
+    """Return the noise, in metres, of the kinds that the likelihood on a space gives more than the others.
+
+    ``known`` are the fields of the points without it; none: they are searched there.
+    """
     if not judged:
         return {}
     some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
     plane, value = data.plane[some], data.value[some]
 
-    def trial(noise: Floats, known: list[FieldChoice]) -> _Trial:
+    def trial(noise: Floats, known: Sequence[FieldChoice]) -> _Trial:
         field, own = choose_covariance(space, plane, value, noise, None, known, data.trend)[0]
         return _Trial(noise, own + 2 * float(np.log(noise).sum()), field)
 
@@ -107,7 +115,7 @@ def _found(space: TensorSpace, data: Data, judged: dict[str, NDArray[np.bool_]])
         noise = np.where(own, before.noise * factor, before.noise)
         return trial(noise, [before.field]) if np.ptp(noise) < MOST else replace(before, value=np.inf)
 
-    best = trial(np.array(data.noise[some]), [])
+    best = trial(np.array(data.noise[some]), known)
     found: dict[str, NDArray[np.bool_]] = {}
     for kind, own in judged.items():
         # What the kinds farther from the rock scatter by keeps its ratio: it was found relative to this kind as well.

@@ -9,15 +9,18 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+from numpy.lib.stride_tricks import as_strided, sliding_window_view
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
+from scipy.linalg.blas import dtrsm
+from scipy.linalg.lapack import dpotri
 from scipy.sparse import csr_array
 
 from geofit.data.errors import FitError
 from geofit.data.messages import message
 from geofit.splines.tensor import RIDGES
 
-__all__ = ["BlockFactor", "InverseBlocks"]
+__all__ = ["BlockFactor", "InverseBlocks", "inverse_band"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -50,7 +53,7 @@ class BlockFactor:
         # Scaled to a unit diagonal, as in geofit.splines.tensor.Factor.
         self._scale = 1 / np.sqrt(band[0])
         self._starts = np.arange(0, self.size, self.width)
-        diagonal, below = self._cut(band)
+        diagonal, below = _cut(_scaled(band, self._scale), self.width)
         for ridge in RIDGES:
             try:
                 self._factorise(diagonal, below, ridge)
@@ -64,29 +67,12 @@ class BlockFactor:
             )
         )
 
-    def _cut(self, band: Floats) -> tuple[list[Floats], list[Floats]]:
-        """Return the scaled diagonal blocks (lower triangles) and the blocks below them."""
-        w = self.width
-        diagonal, below = [], []
-        for start in self._starts:
-            end = min(start + w, self.size)
-            last = min(end + w, self.size)
-            column = np.zeros((last - start, end - start))
-            for k in range(min(len(band), last - start)):
-                count = min(end - start, self.size - start - k)
-                j = np.arange(count)
-                column[j + k, j] = band[k, start : start + count]
-            column *= self._scale[start:last, None] * self._scale[start:end]
-            diagonal.append(column[: end - start])
-            below.append(column[end - start :])
-        return diagonal, below[:-1]
-
     def _factorise(self, diagonal: list[Floats], below: list[Floats], ridge: float) -> None:
         self._lower: list[Floats] = []
         self._below: list[Floats] = []
         left: Floats | float = 0.0
         for k, block in enumerate(diagonal):
-            full = np.tril(block) - left
+            full = block - left
             full.flat[:: len(full) + 1] += ridge
             lower = cholesky(full, lower=True, check_finite=False)
             self._lower.append(lower)
@@ -145,23 +131,8 @@ class BlockFactor:
         return np.asarray(result * self._scale[:, None])
 
     def inverse(self) -> InverseBlocks:
-        """Return the inverse within the band, by the recursion of Takahashi et al. (1973) on blocks.
-
-        With G = L_(k+1,k) L_kk^-1: Z_(k+1,k) = -Z_(k+1,k+1) G and Z_kk = L_kk^-T L_kk^-1 - G' Z_(k+1,k).
-        """
-        diagonal: list[Floats] = []
-        below: list[Floats] = []
-        for k in range(len(self._starts) - 1, -1, -1):
-            lower = self._lower[k]
-            inverse = solve_triangular(lower, np.eye(len(lower)), lower=True, check_finite=False)
-            own = inverse.T @ inverse
-            if k + 1 < len(self._starts):
-                step = self._below[k] @ inverse
-                off = -diagonal[-1] @ step
-                own -= step.T @ off
-                below.append(off)
-            diagonal.append((own + own.T) / 2)
-        return InverseBlocks(self.width, diagonal[::-1], below[::-1], self._scale)
+        """Return the inverse within the band."""
+        return InverseBlocks(self.width, *_inverted(self._lower, self._below), self._scale)
 
 
 class InverseBlocks:
@@ -184,3 +155,63 @@ class InverseBlocks:
             part = block[local[:, :, None], local[:, None, :]]
             result[mine] = np.einsum("na,nab,nb->n", scaled[mine], part, scaled[mine])
         return result
+
+
+def inverse_band(lower: Floats) -> Floats:
+    """Return the entries of the inverse of L L' within the band, (width + 1, size), of a banded Cholesky factor L."""
+    width, size = max(min(len(lower) - 1, lower.shape[1]), 1), lower.shape[1]
+    diagonal, below = _inverted(*_cut(lower, width))
+    band = np.empty((width + 1, width * len(diagonal)))
+    for k, own in enumerate(diagonal):
+        column = np.zeros((2 * width, width))
+        column[: len(own), : len(own)] = own
+        if k < len(below):
+            column[width : width + len(below[k])] = below[k]
+        band[:, k * width : (k + 1) * width] = _by_diagonals(column)
+    return band[:, :size]
+
+
+def _by_diagonals(column: Floats) -> Floats:
+    """Return the view of a block column, (2 w, w), whose row k is the diagonal k steps below the main one."""
+    return as_strided(column, (column.shape[1] + 1, column.shape[1]), (column.strides[0], sum(column.strides)))
+
+
+def _cut(band: Floats, width: int) -> tuple[list[Floats], list[Floats]]:
+    """Return the diagonal blocks of a lower band, their lower triangles, and the blocks below them."""
+    size = band.shape[1]
+    padded = np.pad(band[: width + 1], ((0, 0), (0, -size % width)))
+    diagonal, below = [], []
+    for start in range(0, size, width):
+        end = min(start + width, size)
+        column = np.zeros((2 * width, width))
+        _by_diagonals(column)[: len(padded)] = padded[:, start : start + width]
+        diagonal.append(column[: end - start, : end - start])
+        below.append(column[width : width + size - end, : end - start])
+    return diagonal, below[:-1]
+
+
+def _inverted(lower: list[Floats], below: list[Floats]) -> tuple[list[Floats], list[Floats]]:
+    """Return the blocks on and below the diagonal of the inverse Z of L L' (recursion of Takahashi et al., 1973).
+
+    With G = L_(k+1,k) L_kk^-1: Z_(k+1,k) = -Z_(k+1,k+1) G and Z_kk = L_kk^-T L_kk^-1 - G' Z_(k+1,k).
+    """
+    diagonal: list[Floats] = []
+    off: list[Floats] = []
+    for k in range(len(lower) - 1, -1, -1):
+        # The lower triangle of both terms, mirrored at last.
+        own = dpotri(lower[k], lower=True)[0]
+        if k < len(below):
+            step = dtrsm(1.0, lower[k], below[k], side=True, lower=True)
+            off.append(-diagonal[-1] @ step)
+            own -= step.T @ off[-1]
+        own = np.tril(own)
+        mirrored = own + own.T
+        mirrored.flat[:: len(own) + 1] /= 2
+        diagonal.append(mirrored)
+    return diagonal[::-1], off[::-1]
+
+
+def _scaled(band: Floats, scale: Floats) -> Floats:
+    """Return the lower band of a matrix whose rows and columns are multiplied by (size,) numbers."""
+    beyond = np.concatenate([scale, np.zeros(len(band) - 1)])
+    return np.asarray(band * scale * sliding_window_view(beyond, len(scale)))

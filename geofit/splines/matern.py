@@ -25,9 +25,11 @@ from numpy.typing import NDArray
 from scipy.linalg import cholesky_banded
 
 from geofit.splines import bspline
+from geofit.splines.blocks import inverse_band
+from geofit.splines.couplings import applied, banded, from_band, product_near, squared
 from geofit.splines.tensor import TensorSpace
 
-__all__ = ["MaternPrecision", "metric"]
+__all__ = ["MaternPrecision", "metric", "metric_slopes"]
 
 Floats = NDArray[np.float64]
 
@@ -38,6 +40,37 @@ def metric(stretch: tuple[float, float]) -> tuple[float, float, float]:
     size = math.hypot(p, q)
     even, odd = math.cosh(size), math.sinh(size) / size if size > 1e-12 else 1.0
     return even + odd * p, odd * q, even - odd * p
+
+
+def metric_slopes(stretch: tuple[float, float]) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """Return the derivatives of (a, b, c) of :func:`metric` by p and by q."""
+    p, q = stretch
+    size = math.hypot(p, q)
+    small = size < 1e-4
+    odd = 1.0 if small else math.sinh(size) / size
+    curved = 1 / 3 if small else (math.cosh(size) - odd) / size**2
+    by_p = odd * p + odd + p * p * curved, p * q * curved, odd * p - odd - p * p * curved
+    by_q = odd * q + p * q * curved, odd + q * q * curved, odd * q - p * q * curved
+    return by_p, by_q
+
+
+def _powers(form: tuple[float, float, float], highest: int) -> list[Floats]:
+    """Return the coefficients of x^k y^n in the powers 0, 1, ... of a + b x + b y + c x y."""
+    powers = [np.ones((1, 1))]
+    for _ in range(highest):
+        powers.append(_grown(powers[-1], form))
+    return powers
+
+
+def _grown(power: Floats, form: tuple[float, float, float]) -> Floats:
+    """Return the coefficients of a polynomial in x and y times a + b x + b y + c x y."""
+    a, b, c = form
+    grown = np.zeros((len(power) + 1, len(power) + 1))
+    grown[:-1, :-1] += a * power
+    grown[1:, :-1] += b * power
+    grown[:-1, 1:] += b * power
+    grown[1:, 1:] += c * power
+    return grown
 
 
 class MaternPrecision:
@@ -57,7 +90,10 @@ class MaternPrecision:
         #: Exponent of the form F, made of derivatives, and how many times it is applied.
         self.order = min(alpha, space.degree)
         self.power = alpha // self.order
-        self._last: tuple[tuple[float, tuple[float, float]], Floats] = (math.nan, (0.0, 0.0)), np.empty(0)
+        #: How many steps apart E couples control points, in each direction.
+        self.reach = self.power * space.degree
+        self._formed: tuple[tuple[float, tuple[float, float]], Floats] = (math.nan, (0.0, 0.0)), np.empty(0)
+        self._factored = self._formed
 
     @cached_property
     def _terms(self) -> list[tuple[int, int, int]]:
@@ -94,31 +130,39 @@ class MaternPrecision:
 
     def _weights(self, kappa: float, stretch: tuple[float, float]) -> Floats:
         """Return the weight of each term of F."""
-        a, b, c = metric(stretch)
-        power = np.ones((1, 1))
-        tables = []
-        for _ in range(self.order + 1):
-            tables.append(power)
-            grown = np.zeros((len(power) + 1, len(power) + 1))
-            grown[:-1, :-1] += a * power
-            grown[1:, :-1] += b * power
-            grown[:-1, 1:] += b * power
-            grown[1:, 1:] += c * power
-            power = grown
+        tables = _powers(metric(stretch), self.order)
         order = [math.comb(self.order, m) * kappa ** (2 * (self.order - m)) for m in range(self.order + 1)]
         return np.array([order[m] * tables[m][k, n] for m, k, n in self._terms])
+
+    def _weight_slopes(self, kappa: float, stretch: tuple[float, float]) -> Floats:
+        """Return (3, terms) the derivatives of the weights by log kappa and both parts of the stretch."""
+        tables, slopes = _powers(metric(stretch), self.order), metric_slopes(stretch)
+        order = [math.comb(self.order, m) * kappa ** (2 * (self.order - m)) for m in range(self.order + 1)]
+        rows = [[2 * (self.order - m) * order[m] * tables[m][k, n] for m, k, n in self._terms]]
+        for slope in slopes:
+            turned = [np.zeros((1, 1)), *(m * _grown(tables[m - 1], slope) for m in range(1, self.order + 1))]
+            rows.append([order[m] * turned[m][k, n] for m, k, n in self._terms])
+        return np.array(rows)
 
     def _form(self, kappa: float, stretch: tuple[float, float]) -> Floats:
         """Return F, (2 p + 1, nu, 2 p + 1, nv); the last one is kept.
 
         Entry (a, i, b, j) couples control point (i + a - p, j + b - p) with (i, j).
         """
-        if (kappa, stretch) != self._last[0]:
+        if (kappa, stretch) != self._formed[0]:
             width, (nu, nv) = 2 * self.space.degree + 1, self.space.shape
             along, across = (factor.reshape(len(factor), -1) for factor in self._factors)
             form = (along * self._weights(kappa, stretch)[:, None]).T @ across
-            self._last = (kappa, stretch), form.reshape(width, nu, width, nv)
-        return self._last[1]
+            self._formed = (kappa, stretch), form.reshape(width, nu, width, nv)
+        return self._formed[1]
+
+    def _factor(self, kappa: float, stretch: tuple[float, float]) -> Floats:
+        """Return the banded Cholesky factor of F; the last one is kept."""
+        if (kappa, stretch) != self._factored[0]:
+            form = banded(self._form(kappa, stretch)[self.space.degree :])
+            lower = cholesky_banded(form, lower=True, overwrite_ab=True, check_finite=False)
+            self._factored = (kappa, stretch), lower
+        return self._factored[1]
 
     def band(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> Floats:
         """Return the band of E for a kappa per unit of length and a stretch (see `metric`), (bandwidth + 1, size).
@@ -126,19 +170,7 @@ class MaternPrecision:
         It is wider than the space's own where the exponent is beyond the degree.
         """
         form = self._form(kappa, stretch)
-        return self._banded(form[self.space.degree :] if self.power == 1 else _squared(form, self._masses))
-
-    def _banded(self, blocks: Floats) -> Floats:
-        """Return the band of couplings with the control points not before, (r + 1, nu, 2 r + 1, nv)."""
-        reach, (nu, nv) = len(blocks) - 1, self.space.shape
-        # Column by column, as LAPACK takes it.
-        width = min(reach * nv + reach, self.space.size - 1) + 1
-        band = np.zeros((nu, nv, width))
-        for a in range(reach + 1):
-            for b in range(-reach, reach + 1):
-                if 0 <= a * nv + b < width:
-                    band[:, :, a * nv + b] += blocks[a, :, b + reach]
-        return band.reshape(self.space.size, width).T
+        return banded(form[self.space.degree :] if self.power == 1 else squared(form, self._masses))
 
     def logdet(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> float:
         """Return the logarithm of the determinant of E.
@@ -148,44 +180,44 @@ class MaternPrecision:
         scipy.linalg.LinAlgError
             If F is not positive definite to working precision.
         """
-        form = self._banded(self._form(kappa, stretch)[self.space.degree :])
-        lower = cholesky_banded(form, lower=True, overwrite_ab=True, check_finite=False)
+        lower = self._factor(kappa, stretch)
         return float(self.power * 2 * np.log(lower[0]).sum() - (self.power - 1) * np.log(self._masses).sum())
+
+    def logdet_slopes(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> Floats:
+        """Return (3,) the derivatives of :meth:`logdet` by log kappa and both parts of the stretch."""
+        inverse = from_band(inverse_band(self._factor(kappa, stretch)), self.space.shape, self.space.degree)
+        return self.power * self._of_terms(kappa, stretch, inverse)
+
+    def trace_slopes(self, kappa: float, stretch: tuple[float, float], couplings: Floats) -> Floats:
+        """Return (3,) the derivatives of tr(G E) by log kappa and both parts of the stretch.
+
+        Parameters
+        ----------
+        kappa : float
+            Inverse range per unit of length.
+        stretch : tuple of float
+            See `metric`.
+        couplings : (2 r + 1, nu, 2 r + 1, nv) array
+            Those of a symmetric matrix G (:mod:`geofit.splines.couplings`) of the reach of E: the degree of the space,
+            twice that where F is applied twice.
+        """
+        if self.power == 1:
+            return self._of_terms(kappa, stretch, couplings)
+        return 2 * self._of_terms(kappa, stretch, product_near(self._form(kappa, stretch), self._masses, couplings))
+
+    def _of_terms(self, kappa: float, stretch: tuple[float, float], couplings: Floats) -> Floats:
+        """Return (3,) the derivatives of tr(G F) for couplings G, (2 p + 1, nu, 2 p + 1, nv)."""
+        along, across = (factor.reshape(len(factor), -1) for factor in self._factors)
+        met = along @ couplings.reshape(along.shape[1], across.shape[1])
+        return np.asarray(self._weight_slopes(kappa, stretch) @ (met * across).sum(axis=1))
 
     def times_planes(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> Floats:
         """Return E times the coefficients of 1, u and v, (size, 3)."""
         terms = self._of_planes
         flat = np.tensordot(self._weights(kappa, stretch)[: len(terms)], terms, axes=1)
         for _ in range(self.power - 1):
-            flat = _applied(self._form(kappa, stretch), flat / self._masses[..., None])
+            flat = applied(self._form(kappa, stretch), flat / self._masses[..., None])
         return np.asarray(flat.reshape(-1, 3))
-
-
-def _squared(form: Floats, mass: Floats) -> Floats:
-    """Return F D^-1 F of couplings F, (2 p + 1, nu, 2 p + 1, nv), and masses D, (nu, nv).
-
-    Its couplings with the control points not before, (2 p + 1, nu, 4 p + 1, nv).
-    """
-    p, (nu, nv) = len(form) // 2, mass.shape
-    over = np.pad(form / mass[:, None], ((0, 0), (p, p), (0, 0), (p, p)))
-    result = np.zeros((2 * p + 1, nu, 4 * p + 1, nv))
-    for a in range(2 * p + 1):
-        # From i to i + a - p, and on to i + a - p + k - p, which is not before i.
-        first = 2 * p - a
-        for b in range(2 * p + 1):
-            met = over[first:, a : a + nu, :, b : b + nv]
-            result[: a + 1, :, b : b + 2 * p + 1] += met * form[a, :, b][:, None]
-    return result
-
-
-def _applied(form: Floats, net: Floats) -> Floats:
-    """Return couplings, (2 p + 1, nu, 2 p + 1, nv), times a net, (nu, nv, k)."""
-    p, (nu, nv) = len(form) // 2, net.shape[:2]
-    result = np.zeros((nu + 2 * p, nv + 2 * p, net.shape[2]))
-    for a in range(2 * p + 1):
-        for b in range(2 * p + 1):
-            result[a : a + nu, b : b + nv] += form[a, :, b, :, None] * net
-    return result[p : p + nu, p : p + nv]
 
 
 def _times(diagonals: Floats, x: Floats) -> Floats:

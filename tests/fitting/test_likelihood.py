@@ -4,29 +4,15 @@ import math
 
 import numpy as np
 import pytest
+from likelihoods import N, judge, setting
 
-from geofit.fitting.likelihood import CURVED, DOUBT, RISE, Likelihood, Slope
-from geofit.splines import bspline
-from geofit.splines.matern import MaternPrecision
-from geofit.splines.tensor import TensorSpace
-
-N = 60
+from geofit.fitting.likelihood import CURVED, DOUBT, RISE, ROUND, Likelihood, Slope
+from geofit.splines.matern import MaternPrecision, metric
 
 
-def setting(seed=0, columns=1):
-    rng = np.random.default_rng(seed)
-    space = TensorSpace(bspline.clamped_knots(np.arange(-2, 11.0), 3), bspline.clamped_knots(np.arange(-2, 9.0), 3))
-    plane = rng.uniform(0, 7, (N, 2))
-    z = np.sin(plane[:, 0]) + 0.3 * plane[:, 1] + rng.normal(0, 0.1, N)
-    z = z if columns == 1 else np.column_stack([z, plane[:, 0], np.cos(plane[:, 1])])
-    weight = rng.uniform(0.5, 2, N)
-    return space, plane, z, weight
-
-
-def judge(space, plane, z, weight, alpha):
-    band, right = space.normal_equations(plane, z, weight)
-    square = float((weight @ z.reshape(N, -1) ** 2).sum())
-    return Likelihood(space, alpha, band, right, square, Slope(np.eye(3), np.zeros(3), 0.0), N)
+def at_place(likelihood, place):
+    log_kappa, log_rho, *stretch = place
+    return likelihood(likelihood.parameters(math.exp(log_kappa), math.exp(log_rho), tuple(stretch)))
 
 
 def dense_value(space, plane, z, weight, alpha, log_kappa, log_rho, stretch):
@@ -56,30 +42,34 @@ def test_differences_agree_with_dense_algebra(alpha, columns):
     given = setting(columns=columns)
     likelihood = judge(*given, alpha)
     places = [(0.0, -3.0, 0.0, 0.0), (-0.5, -5.0, 0.3, 0.2), (0.7, 0.5, -0.4, 0.6)]
-    ours = [likelihood(np.array(place)) for place in places]
+    ours = [at_place(likelihood, place) for place in places]
     theirs = [dense_value(*given, alpha, place[0], place[1], place[2:]) for place in places]
     np.testing.assert_allclose(np.diff(ours), np.diff(theirs), atol=1e-5)
 
 
-def test_the_search_ends_at_a_maximum():
+@pytest.mark.parametrize("alpha", [1, 2, 3, 6])
+@pytest.mark.parametrize("columns", [1, 3])
+@pytest.mark.parametrize("extent", [0.0, 8.0])
+def test_the_gradient_against_central_differences(alpha, columns, extent):
+    space, plane, z, weight = setting(columns=columns)
+    likelihood = judge(space, plane, z, weight, alpha, Slope(np.eye(3), np.array([0.0, -0.4, 0.7]), extent))
+    places = [(1.1, 1e-2, (0.0, 0.0)), (0.8, 1e-4, (0.25, 0.15)), (1.5, 0.3, (-0.4, 0.6))]
+    for at in (likelihood.parameters(*place) for place in places):
+        # Applied twice, the form leaves the value seven digits.
+        expected = [(likelihood(at + by) - likelihood(at - by)) / 2e-3 for by in 1e-3 * np.eye(4)]
+        np.testing.assert_allclose(likelihood.gradient(at), expected, rtol=1e-3, atol=0.01)
+
+
+def test_a_range_cut_at_its_bound_keeps_the_variance():
     likelihood = judge(*setting(), 3)
-    start = [(0.0, log, 0.0, 0.0) for log in (-10.0, -6.0, -2.0)]
-    found = likelihood.best(start, 4, 30)
-    best = np.array([math.log(found.kappa), math.log(found.rho), *found.stretch])
-    low, high = np.array(likelihood.bounds()).T
-    for k in range(4):
-        for step in (-0.05, 0.05):
-            moved = best.copy()
-            moved[k] = np.clip(moved[k] + step, low[k], high[k])
-            assert likelihood(moved) >= found.value - 0.05
-    assert found.value <= min(likelihood(np.array(one)) for one in start)
-
-
-def test_the_noise_s_variance_is_found():
-    found = judge(*setting(), 3).best([(0.0, log, 0.0, 0.0) for log in (-10.0, -6.0, -2.0)], 2, 20)
-    # Weights of mean 1.25 about noise of 0.1 m.
-    assert found.variance == pytest.approx(0.0125, rel=0.5)
-    assert found.kappa >= CURVED - 1e-9
+    found = likelihood.optimum(likelihood.parameters(0.01, 1e-3, (0.3, 0.1)))
+    # The range in the direction of the longest is the one that is bounded.
+    assert found.kappa > likelihood.optimum(likelihood.parameters(0.01, 1e-3, (0.0, 0.0))).kappa >= 0.99 * CURVED
+    longest = math.sqrt(np.linalg.eigvalsh(np.array(metric(found.stretch))[[[0, 1], [1, 2]]])[1]) / found.kappa
+    assert longest == pytest.approx(1 / CURVED, rel=ROUND / 2)
+    wide = judge(*setting(), 3)
+    whole = wide.optimum(wide.parameters(0.3, 1e-3, (0.3, 0.1)))
+    assert whole.rho * whole.kappa**4 == pytest.approx(1e-3 * 0.3**4)
 
 
 def test_an_exact_plane_has_a_finite_likelihood():
@@ -112,5 +102,5 @@ def test_the_slope_s_prior_agrees_with_dense_algebra():
             value = (N - 1) * math.log(misfit / (N - 1)) + np.linalg.slogdet(v)[1] + math.log(moment)
             values.append(value + 3 * math.log(wider) + 1 / wider)
         expected.append(min(values) + (np.hypot(*stretch) / DOUBT) ** 2)
-    ours = [likelihood(np.array(place)) for place in places]
+    ours = [at_place(likelihood, place) for place in places]
     np.testing.assert_allclose(np.diff(ours), np.diff(expected), atol=1e-5)

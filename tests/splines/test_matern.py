@@ -6,7 +6,8 @@ from scipy.integrate import dblquad
 from scipy.special import gamma, kv
 
 from geofit.splines import bspline
-from geofit.splines.matern import MaternPrecision, metric
+from geofit.splines.couplings import dyads
+from geofit.splines.matern import MaternPrecision, metric, metric_slopes
 from geofit.splines.tensor import TensorSpace, band_times
 
 
@@ -115,3 +116,32 @@ def test_a_form_applied_twice_is_the_product_of_dense_matrices():
     expected = form @ (form / masses[:, None])
     found = dense(MaternPrecision(space, 6).band(kappa, stretch))
     np.testing.assert_allclose(found, expected, atol=1e-3 * np.abs(expected).max())
+
+
+def central(function, place, step=1e-5):
+    """Return the derivatives of a function of a place by central differences."""
+    moved = step * np.eye(len(place))
+    return np.array([(function(place + by) - function(place - by)) / (2 * step) for by in moved])
+
+
+@pytest.mark.parametrize("stretch", [(0.0, 0.0), (1e-5, 0.0), (0.3, -0.2), (-1.0, 0.7)])
+def test_slopes_of_the_metric_against_central_differences(stretch):
+    expected = central(lambda place: np.array(metric((place[0], place[1]))), np.array(stretch))
+    np.testing.assert_allclose(metric_slopes(stretch), expected, atol=1e-8)
+
+
+@pytest.mark.parametrize("alpha", [1, 2, 3, 6])
+def test_slopes_of_traces_and_of_the_determinant_against_central_differences(alpha):
+    space, place = space_of(4.0, 3.0), np.array([np.log(0.9), 0.2, -0.1])
+    precision = MaternPrecision(space, alpha)
+    net = np.random.default_rng(4).normal(size=(*space.shape, 2))
+
+    def trace(place):
+        band = precision.band(np.exp(place[0]), (place[1], place[2]))
+        return float((net.reshape(-1, 2) * band_times(band, net.reshape(-1, 2))).sum())
+
+    found = precision.trace_slopes(np.exp(place[0]), (place[1], place[2]), dyads(net, precision.reach))
+    np.testing.assert_allclose(found, central(trace, place), rtol=1e-5)
+    found = precision.logdet_slopes(np.exp(place[0]), (place[1], place[2]))
+    expected = central(lambda at: precision.logdet(np.exp(at[0]), (at[1], at[2])), place)
+    np.testing.assert_allclose(found, expected, rtol=1e-5)
