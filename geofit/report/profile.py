@@ -14,8 +14,9 @@ from geofit.data.points import PointSet
 from geofit.data.prediction import PredictionResult
 from geofit.data.site import Section, Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.prediction.bands import band_directions, prediction_sd
-from geofit.sampling.cut import CutLine, cut_section
+from geofit.geometry.mesh import Mesh
+from geofit.prediction.section_bands import SectionBand, section_bands
+from geofit.sampling.cut import cut_section
 
 __all__ = ["Profile", "along_polyline", "profiles", "report_sections"]
 
@@ -23,8 +24,6 @@ Floats = NDArray[np.float64]
 
 #: Sections of a report, and how far from a section (share of its length) holes and points are shown on it.
 MOST, THICKNESS = 4, 0.02
-#: Half of the 90 % band of a normal law, in standard deviations.
-HALF = 1.6448536269514722
 #: Largest distance of the triangles that are cut, metres; vertices of the lines are exact.
 COARSE = 0.5
 #: Points in one line have no section across it: below this share of the site's extent.
@@ -35,13 +34,12 @@ NARROWEST = 1e-3
 class Profile:
     """A line of a horizon in a section: ``line`` (k, 2) distance along the section and elevation, metres.
 
-    ``lower`` and ``upper`` (k, 2) are the ends of the 90 % band of a new hole's contact, None where it is not known.
+    ``band`` is the 90 % band of a new hole's contact, None where it is not known.
     """
 
     horizon: str
     line: Floats
-    lower: Floats | None = None
-    upper: Floats | None = None
+    band: SectionBand | None = None
 
 
 def report_sections(site: Site, points: Sequence[PointSet]) -> tuple[Section, ...]:
@@ -61,12 +59,7 @@ def profiles(
 ) -> Mapping[str, tuple[Profile, ...]]:
     """Return what each section cuts of a horizon, by the section's name."""
     mesh = fit.triangulate(COARSE)
-    return {
-        section.name: tuple(
-            _profile(fit, found, section, cut) for cut in cut_section(fit.surface, section.line, mesh=mesh)
-        )
-        for section in sections
-    }
+    return {section.name: _profiles(fit, found, section, mesh) for section in sections}
 
 
 def along_polyline(line: Floats, xy: Floats) -> tuple[Floats, Floats]:
@@ -84,30 +77,15 @@ def along_polyline(line: Floats, xy: Floats) -> tuple[Floats, Floats]:
     return where, best
 
 
-def _profile(fit: HorizonFit, found: PredictionResult | None, section: Section, cut: CutLine) -> Profile:
-    line = np.column_stack([cut.distance, cut.xyz[:, 2]])
-    uncertainty = found.uncertainty if found is not None else None
-    if uncertainty is None or fit.model is None:
-        return Profile(fit.name, line)
-    sd = guarded(lambda: prediction_sd(fit, uncertainty, cut.xyz, "contact"), None, lambda reason: None)
-    if sd is None:
-        return Profile(fit.name, line)
-    shift = HALF * sd[:, None] * _within_section(fit, section, cut)
-    return Profile(fit.name, line, line - shift, line + shift)
-
-
-def _within_section(fit: HorizonFit, section: Section, cut: CutLine) -> Floats:
-    """Return how a shift by one metre of the surface moves its trace in the plane of the section, (k, 2).
-
-    Moving a plane by w along its normal n moves its trace by w n' / |n'|^2, n' the part of n in the section.
-    """
-    normal = band_directions(fit, cut.xyz)
-    steps = np.diff(section.line, axis=0)
-    lengths = np.linalg.norm(steps, axis=1)
-    leg = np.clip(np.searchsorted(np.cumsum(lengths), cut.distance), 0, len(steps) - 1)
-    ways = steps / lengths[:, None]
-    across = np.column_stack([(ways[leg] * normal[:, :2]).sum(axis=1), normal[:, 2]])
-    return np.asarray(across / np.maximum((across**2).sum(axis=1), 0.05)[:, None])
+def _profiles(fit: HorizonFit, found: PredictionResult | None, section: Section, mesh: Mesh) -> tuple[Profile, ...]:
+    cuts = cut_section(fit.surface, section.line, mesh=mesh)
+    uncertainty = None if found is None else found.uncertainty
+    unknown: tuple[SectionBand | None, ...] = (None,) * len(cuts)
+    bands = guarded(lambda: section_bands(fit, uncertainty, section.line, cuts), unknown, lambda reason: None)
+    return tuple(
+        Profile(fit.name, np.column_stack([cut.distance, cut.xyz[:, 2]]), band)
+        for cut, band in zip(cuts, bands, strict=True)
+    )
 
 
 def _crosswise(site: Site, points: Sequence[PointSet]) -> tuple[Section, ...]:

@@ -254,10 +254,10 @@ def _draw(
                 one.distance, one.z, color=colours[name], lw=1.4 if one.supported else 1.0,
                 ls="-" if one.supported else DASHES, label=name if first else None, zorder=5,
             )  # fmt: skip
-            if one.band is not None and one.supported and (np.diff(one.distance) >= 0).all():
-                axes.fill_between(
-                    one.distance, one.z - one.band, one.z + one.band, color=colours[name], alpha=0.18, lw=0,
-                    label=None if banded else t("90 % band"), zorder=1,
+            if one.band is not None and one.supported:
+                axes.fill(
+                    *one.band.outline.T, color=colours[name], alpha=0.18, lw=0,
+                    label=None if banded else t("90 % band of a new hole"), zorder=1,
                 )  # fmt: skip
                 banded = True
     _bodies(axes, view, t)

@@ -56,10 +56,10 @@ def section_sheet(section: Section, site: Site, cut: Mapping[str, Sequence[Profi
     z = np.concatenate([line.line[:, 1] for line in lines] or [ground if len(ground) else np.zeros(1)])
     low, high = float(z.min()), float(z.max())
     reach = WIDEST_BAND * max(high - low, 0.02 * length)
-    banded = [(line.lower, line.upper) for line in lines if line.lower is not None and line.upper is not None]
-    for lower, upper in banded:
-        low = min(low, max(float(np.nanmin(lower[:, 1])), float(z.min()) - reach))
-        high = max(high, min(float(np.nanmax(upper[:, 1])), float(z.max()) + reach))
+    bands = [line.band for line in lines if line.band is not None]
+    for band in bands:
+        low = min(low, max(float(band.lower[:, 1].min()), float(z.min()) - reach))
+        high = max(high, min(float(band.upper[:, 1].max()), float(z.max()) + reach))
     if len(ground):
         low, high = min(low, float(ground.min())), max(high, float(ground.max()))
     room = max(0.04 * (high - low), 0.003 * length)
@@ -68,7 +68,7 @@ def section_sheet(section: Section, site: Site, cut: Mapping[str, Sequence[Profi
     start, end = ((float(x), float(y)) for x, y in (section.line[0], section.line[-1]))
     raised = exaggeration_for(high - low, scale, TALLEST)
     return SectionSheet(
-        section.name, start, end, length, low, high, scale, raised, bool(banded), bool(len(ground)), picture
+        section.name, start, end, length, low, high, scale, raised, bool(bands), bool(len(ground)), picture
     )  # fmt: skip
 
 
@@ -156,9 +156,8 @@ def _ground(axes: Axes, section: Section, ground: Ground | None, length: float) 
 
 def _profile(axes: Axes, profile: Profile, colour: str, ground: tuple[Floats, Floats] | None) -> None:
     """Draw the band, and the line: whole below the ground, dashed above it."""
-    if profile.lower is not None and profile.upper is not None:
-        ring = np.concatenate([profile.upper, profile.lower[::-1]])
-        axes.fill(*ring.T, facecolor=colour, alpha=0.2, edgecolor="none", zorder=2)
+    if profile.band is not None:
+        axes.fill(*profile.band.outline.T, facecolor=colour, alpha=0.2, edgecolor="none", zorder=2)
     s, z = profile.line.T
     above = np.zeros(len(s), bool) if ground is None else z > np.interp(s, *ground) + 1e-6
     for part, style in ((above, (0, (4, 2.5))), (~above, "solid")):

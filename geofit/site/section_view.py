@@ -13,7 +13,9 @@ from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.data.prediction import Uncertainty
 from geofit.data.site import Ground, Hole, Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.mesh import Mesh
+from geofit.prediction.section_bands import SectionBand, section_bands
 from geofit.sampling.cut import cut_section, section_line
 from geofit.site.hole_logs import hole_intervals
 from geofit.site.support import support_of
@@ -32,8 +34,6 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 
-#: Half width of a 90 % band in standard deviations.
-NINETY = 1.6448536269514722
 #: Places of the ground along a section.
 GROUND_PLACES = 400
 #: Lines of a section need not be nearer to the surface than this, metres.
@@ -42,7 +42,7 @@ TOLERANCE = 0.05
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """A stretch of a surface: ``distance`` and ``z`` (n,), metres; ``band`` (n,) half width of the 90 % band or None.
+    """A stretch of a surface: ``distance`` and ``z`` (n,), metres; ``band`` is its 90 % band, None if unknown.
 
     ``supported`` is false above the ground and beyond the points of the surface: such stretches are drawn dashed.
     """
@@ -50,7 +50,7 @@ class Trace:
     distance: Floats
     z: Floats
     supported: bool
-    band: Floats | None = None
+    band: SectionBand | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,11 +173,14 @@ def section_view(
         support = None if points is None else support_of(points.xyz, site.ground)
         found: list[Trace] = []
         mesh = None if meshes is None else meshes.get(horizon)
-        for cut in cut_section(surface, corners, tolerance=TOLERANCE, mesh=mesh):
+        cuts = cut_section(surface, corners, tolerance=TOLERANCE, mesh=mesh)
+        known: tuple[SectionBand | None, ...] = (None,) * len(cuts)
+        if isinstance(surface, HorizonFit):
+            known = section_bands(surface, bands.get(horizon), corners, cuts)
+        for cut, band in zip(cuts, known, strict=True):
             held = np.ones(len(cut.distance), bool) if support is None else support.within(cut.xyz)
-            band = _band(cut.xyz, bands.get(horizon))
             for run in _runs(held):
-                part = None if band is None else band[run]
+                part = None if band is None else band.part(run)
                 found.append(Trace(cut.distance[run], cut.xyz[run, 2], bool(held[run.start]), part))
         traces[horizon] = tuple(found)
     shown = {}
@@ -248,14 +251,6 @@ def _runs(held: NDArray[np.bool_]) -> list[slice]:
     """Return stretches of equal support; one ends where the next begins."""
     ends = [0, *(np.flatnonzero(np.diff(held)) + 1).tolist(), len(held)]
     return [slice(a, min(b + 1, len(held))) for a, b in pairwise(ends)]
-
-
-def _band(xyz: Floats, uncertainty: Uncertainty | None) -> Floats | None:
-    if uncertainty is None or uncertainty.frame != "map":
-        return None
-    # A grid of standard deviations is read as a grid of heights is.
-    grid = Ground(uncertainty.x, uncertainty.y, uncertainty.sd)
-    return np.asarray(NINETY * grid.elevation(xyz[:, 0], xyz[:, 1]))
 
 
 def _ground(ground: Ground | None, corners: Floats, bends: Floats) -> Floats:

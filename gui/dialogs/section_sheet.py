@@ -44,8 +44,10 @@ class SectionSheetDialog(SheetDialog):
         self.title_line.setText(self.tr("Geological section"))
         self.drawing = self.tr("Cutting and drawing the sections…")
         self._line, self._uncertainty, self._bodies = line, dict(uncertainty), dict(bodies)
-        # The patches are all that is cut; what stands behind them need not travel to the other process.
-        self._surfaces = {name: surface.with_(model=None) for name, surface in surfaces.items()}
+        # Only bands need the model behind the patches; elsewhere it need not travel to the other process.
+        self._surfaces = {
+            name: surface if name in uncertainty else surface.with_(model=None) for name, surface in surfaces.items()
+        }
         self.which = QComboBox()
         self.which.addItem(self.tr("The line of the section panel"), "line")
         self.which.addItem(self.tr("Across that line, at equal distances"), "across")

@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
+from geofit.data.prediction import Uncertainty
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.mesh import Mesh
+from geofit.prediction.section_bands import SectionBand, section_bands
 from geofit.sampling.cut import CutLine, cut_section, section_line
 
 __all__ = ["Curtain", "Traces", "site_extent", "trace"]
@@ -20,7 +22,8 @@ __all__ = ["Curtain", "Traces", "site_extent", "trace"]
 Floats = NDArray[np.float64]
 #: Triangles of each surface that was cut already, with the surface that they belong to.
 Meshes = MutableMapping[str, tuple[HorizonFit, Mesh]]
-Traces = Mapping[str, list[CutLine]]
+#: Lines in which the curtain cuts each surface, with their 90 % bands.
+Traces = Mapping[str, list[tuple[CutLine, SectionBand | None]]]
 
 #: Lines of a drawing need not be nearer to the surface than this, metres; their vertices lie on it.
 TOLERANCE = 0.2
@@ -111,15 +114,23 @@ def site_extent(site: Site, surfaces: Mapping[str, HorizonFit]) -> Floats:
     return np.stack([xy.min(axis=0), xy.max(axis=0)])
 
 
-def trace(surfaces: Mapping[str, HorizonFit], line: Floats, meshes: Meshes, progress: Progress | None = None) -> Traces:
-    """Cut every surface along a line; triangles are kept in ``meshes`` for the next cut.
+def trace(
+    surfaces: Mapping[str, HorizonFit],
+    uncertainty: Mapping[str, Uncertainty],
+    line: Floats,
+    meshes: Meshes,
+    progress: Progress | None = None,
+) -> Traces:
+    """Cut every surface along a line, with its 90 % band where its uncertainty is known.
+
+    Triangles are kept in ``meshes`` for the next cut.
 
     Raises
     ------
     Cancelled
         If ``progress`` returned False.
     """
-    found: dict[str, list[CutLine]] = {}
+    found: dict[str, list[tuple[CutLine, SectionBand | None]]] = {}
     with threadpool_limits(limits=1):
         for k, (name, surface) in enumerate(surfaces.items()):
             tell(progress, "section", k / len(surfaces))
@@ -127,5 +138,7 @@ def trace(surfaces: Mapping[str, HorizonFit], line: Floats, meshes: Meshes, prog
             if kept is None or kept[0] is not surface:
                 kept = (surface, surface.triangulate(TOLERANCE))
                 meshes[name] = kept
-            found[name] = cut_section(surface, line, tolerance=TOLERANCE, mesh=kept[1])
+            cuts = cut_section(surface, line, tolerance=TOLERANCE, mesh=kept[1])
+            bands = section_bands(surface, uncertainty.get(name), line, cuts)
+            found[name] = list(zip(cuts, bands, strict=True))
     return found

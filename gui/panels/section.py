@@ -96,6 +96,7 @@ class SectionPanel(QWidget):
         self.setLayout(self.pages)
         self.data: SectionData | None = None
         self._surfaces: Mapping[str, HorizonFit] = {}
+        self._uncertainty: Mapping[str, Uncertainty] = {}
         self.meshes: Meshes = {}
         self._bodies: tuple[SectionBody, ...] = ()
         self.preview: SectionBody | None = None
@@ -140,7 +141,8 @@ class SectionPanel(QWidget):
         for gone in self.meshes.keys() - surfaces.keys():
             del self.meshes[gone]
         kept = {} if self.data is None else {n: t for n, t in self.data.traces.items() if n in surfaces}
-        self.data = SectionData(site, curtain, thickness, kept, uncertainty or {}, faded)
+        self._uncertainty = uncertainty or {}
+        self.data = SectionData(site, curtain, thickness, kept, faded)
         if new:
             self.along.clear()
             self.along.addItem(self.tr("Own line"))
@@ -253,7 +255,7 @@ class SectionPanel(QWidget):
             return
         curtain = self.data.curtain
         self._task = run(
-            self, trace, dict(self._surfaces), curtain.line, self.meshes,
+            self, trace, dict(self._surfaces), dict(self._uncertainty), curtain.line, self.meshes,
             on_done=lambda found: self._show_traces(curtain, found), on_failed=self._tell_failure,
             title=self.tr("Section"),
         )  # fmt: skip
@@ -288,7 +290,7 @@ class SectionPanel(QWidget):
             return
         words = {
             "ground": self.tr("ground", "SectionPanel"),
-            "band": self.tr("90 % band"),
+            "band": self.tr("90 % band of a new hole"),
             "elevation": self.tr("Elevation, m"),
         }
         axes = self.canvas.axes(1)[0]

@@ -13,8 +13,7 @@ from matplotlib.text import Annotation, Text
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from geofit.data.prediction import Uncertainty
-from geofit.data.site import Ground, Site
+from geofit.data.site import Site
 from geofit.gui.panels.canvas import DOT, PlotColours
 from geofit.gui.panels.curtain import Curtain, Traces
 from geofit.gui.panels.section_scale import SectionExtent
@@ -33,8 +32,6 @@ NAME, LETTERS, LEGEND = 12, 7.0, 7.5
 FREE, NOTE = 8.0, 20.0
 #: Height of a line of the legend, logical pixels.
 ROW = 16.0
-#: Half width of a 90 % band in standard deviations.
-NINETY = 1.6449
 GROUND = "#6b7d3a"
 #: Half width of a hole's column of lithology, as a share of the section's length.
 COLUMN = 0.004
@@ -44,7 +41,7 @@ DASHES = (0, (4.0, 2.5))
 
 @dataclass(frozen=True, eq=False)
 class SectionData:
-    """What a section shows; ``uncertainty`` by horizon gives the 90 % bands.
+    """What a section shows.
 
     ``faded`` draws surfaces dashed above the ground and beyond the hull of their points.
     """
@@ -53,7 +50,6 @@ class SectionData:
     curtain: Curtain
     thickness: float
     traces: Traces = field(default_factory=dict)
-    uncertainty: Mapping[str, Uncertainty] = field(default_factory=dict)
     faded: bool = False
 
     def colour(self, name: str) -> str:
@@ -101,7 +97,7 @@ def paint_section(axes: Axes, data: SectionData, colours: PlotColours, words: Ma
         points = data.site.horizons.get(name)
         support = support_of(points.xyz, data.site.ground) if data.faded and points is not None else None
         named = False
-        for line in lines:
+        for line, band in lines:
             held = np.ones(len(line.distance), bool) if support is None else support.within(line.xyz)
             runs = _runs(held)
             solid_shown = any(solid for _, solid in runs)
@@ -112,12 +108,10 @@ def paint_section(axes: Axes, data: SectionData, colours: PlotColours, words: Ma
                     ls="-" if solid else DASHES, alpha=1.0 if solid else 0.65, label=name if first else None, zorder=4,
                 )  # fmt: skip
                 named |= first
-            band = _band(line.xyz, data.uncertainty.get(name))
-            if band is not None and (np.diff(line.distance) >= 0).all():
-                axes.fill_between(
-                    line.distance, line.xyz[:, 2] - band, line.xyz[:, 2] + band, color=colour, alpha=0.18, lw=0,
-                    label=None if banded else words["band"], zorder=1,
-                )  # fmt: skip
+            if band is not None:
+                axes.fill(
+                    *band.outline.T, color=colour, alpha=0.18, lw=0, label=None if banded else words["band"], zorder=1
+                )
                 banded = True
     _holes(axes, data, colours)
     for name in data.site.horizons:
@@ -141,14 +135,6 @@ def _runs(held: NDArray[np.bool_]) -> list[tuple[slice, bool]]:
     """Return stretches of a line with whether they are supported; a stretch ends where the next begins."""
     ends = [0, *(np.flatnonzero(np.diff(held)) + 1).tolist(), len(held)]
     return [(slice(a, min(b + 1, len(held))), bool(held[a])) for a, b in pairwise(ends) if b > a]
-
-
-def _band(xyz: Floats, uncertainty: Uncertainty | None) -> Floats | None:
-    if uncertainty is None or uncertainty.frame != "map":
-        return None
-    # A grid of standard deviations is read as a grid of heights is.
-    sd = Ground(uncertainty.x, uncertainty.y, uncertainty.sd).elevation(xyz[:, 0], xyz[:, 1])
-    return np.asarray(NINETY * sd)
 
 
 def _holes(axes: Axes, data: SectionData, colours: PlotColours) -> None:

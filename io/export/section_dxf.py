@@ -87,11 +87,8 @@ def _section(space: Modelspace, view: SectionView, at: Any, stems: dict[str, str
                 attributes = {"layer": f"{stems[name]}_inferred", "linetype": "DASHED_SECTION"}
             space.add_lwpolyline(at(line), dxfattribs=attributes)
             if one.band is not None:
-                for sign in (-1.0, 1.0):
-                    edge = np.column_stack([one.distance, one.z + sign * one.band])
-                    edge = edge[np.isfinite(edge).all(axis=1)]
-                    if len(edge) > 1:
-                        space.add_lwpolyline(at(edge), dxfattribs={"layer": f"{stems[name]}_band"})
+                for edge in (one.band.lower, one.band.upper):
+                    space.add_lwpolyline(at(edge), dxfattribs={"layer": f"{stems[name]}_band"})
     for name, places in view.points.items():
         for place in at(places):
             space.add_point(place, dxfattribs={"layer": f"{stems[name]}_points"})

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from panel_samples import FAULT, WITH_PERIPHERY, fitted, prediction, sample_site
+from panel_samples import FAULT, WITH_PERIPHERY, fitted, sample_site
 from PySide6.QtCore import QPoint, Qt
 
-from geofit.data.prediction import Uncertainty
 from geofit.gui import worker
-from geofit.gui.panels.curtain import Curtain, site_extent
+from geofit.gui.panels.curtain import Curtain
 from geofit.gui.panels.section import SectionPanel
 from geofit.gui.panels.section_painter import near_points
 from geofit.gui.panels.section_scale import SectionExtent, automatic, window
+from geofit.prediction.bands import prediction_sd
+from geofit.prediction.examine import examine
 
 #: Triangles of the surfaces, made once for all tests.
 MESHES = {}
@@ -120,16 +121,39 @@ def test_the_last_of_many_edits_is_cut(panel, qtbot):
 
 
 def test_the_band_is_ninety_per_cent_wide(panel, qtbot):
-    box = site_extent(sample_site(), {})
-    x, y = (np.linspace(box[0, k], box[1, k], 4) for k in (0, 1))
-    band = Uncertainty(x, y, np.full((4, 4), 2.0), 1.0, 2.0, 2.0, np.ones((4, 4)))
-    show(panel, qtbot, uncertainty={WITH_PERIPHERY: band})
-    axes = panel.canvas.figure.axes[0]
-    vertices = axes.collections[0].get_paths()[0].vertices
-    at = np.abs(vertices[:, 0] - 400) < 40
-    z = np.interp(vertices[at, 0], *np.array(lines(panel)[WITH_PERIPHERY].get_data()))
-    assert np.abs(np.abs(vertices[at, 1] - z) - 2 * 1.6449).max() < 0.05
-    assert prediction(3).uncertainty.frame == "map"
+    surface, uncertainty = fitted(), examine(fitted()).uncertainty
+    show(panel, qtbot, uncertainty={WITH_PERIPHERY: uncertainty})
+    ((cut, _),) = panel.data.traces[WITH_PERIPHERY]
+    half = 1.6449 * prediction_sd(surface, uncertainty, cut.xyz, "contact")
+    (drawn,) = bands(panel)
+    upper, lower = np.split(drawn.get_xy()[:-1], 2)
+    np.testing.assert_allclose(upper[:, 1], cut.xyz[:, 2] + half, atol=1e-4)
+    np.testing.assert_allclose(lower[::-1, 1], cut.xyz[:, 2] - half, atol=1e-4)
+    assert drawn.get_label() == "90 % band of a new hole"
+
+
+@pytest.mark.parametrize("name", [FAULT, "M1"])
+def test_steep_and_folded_surfaces_have_their_bands(panel, qtbot, name):
+    surface, uncertainty = fitted(name), examine(fitted(name)).uncertainty
+    assert uncertainty.frame == surface.frame != "map"
+    middle = surface.points.xyz[:, :2].mean(axis=0)
+    way = {FAULT: [0.0, 1.0], "M1": [1.0, 0.3]}[name]
+    show(
+        panel, qtbot, {name: surface}, line=middle + np.outer([-300, 300], way), uncertainty={name: uncertainty}
+    )  # fmt: skip
+    drawn, cuts = bands(panel), panel.data.traces[name]
+    assert len(drawn) == len(cuts) > 0
+    for polygon, (cut, _) in zip(drawn, cuts, strict=True):
+        upper, lower = np.split(polygon.get_xy()[:-1], 2)
+        trace = np.column_stack([cut.distance, cut.xyz[:, 2]])
+        np.testing.assert_allclose((upper + lower[::-1]) / 2, trace, atol=1e-6, err_msg="the surface is in the middle")
+        # In the plane of the section a band is no narrower than it is across the surface.
+        half = 1.6449 * prediction_sd(surface, uncertainty, cut.xyz, "contact")
+        assert (np.linalg.norm(upper - trace, axis=1) > half - 1e-4).all()
+
+
+def bands(panel):
+    return [patch for patch in panel.canvas.figure.axes[0].patches if patch.get_alpha() == 0.18]
 
 
 def test_exaggeration_is_what_is_drawn(panel, qtbot):

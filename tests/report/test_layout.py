@@ -144,7 +144,7 @@ def test_sections_hold_the_line_its_band_and_what_lies_above_the_ground(results)
     assert (line.line[0, 0], line.line[-1, 0]) == pytest.approx((0.0, 2000.0), abs=1e-6)
     xy = np.column_stack([499_400.0 + line.line[:, 0], np.full(len(line.line), 3_100_000.0)])
     np.testing.assert_allclose(made[0].surface.elevation(*xy.T), line.line[:, 1], atol=1e-6)
-    assert line.lower is None  # nothing stands behind a surface that was made by hand
+    assert line.band is None  # nothing stands behind a surface that was made by hand
     s, off = along_polyline(sections[0].line, np.array([[500_000.0, 3_100_030.0], [499_300.0, 3_100_000.0]]))
     assert (s.tolist(), off.tolist()) == ([600.0, 0.0], [30.0, 100.0])
 

@@ -12,6 +12,7 @@ import pytest
 from geofit.data.errors import SettingsError
 from geofit.data.languages import EN, ZH
 from geofit.io.export.section_dxf import write_sheet_dxf
+from geofit.prediction.section_bands import SectionBand
 from geofit.report import section_pages
 from geofit.report.paper import PAPERS, SCALES, SheetTitle
 from geofit.report.section_pages import (
@@ -29,7 +30,10 @@ def view(name="A", length=400.0, rise=60.0):
     x = np.linspace(0, length, 41)
     z = 100 + rise * np.sin(x / 90)
     half = len(x) // 2
-    low = (Trace(x[: half + 1], z[: half + 1], True, np.full(half + 1, 2.0)), Trace(x[half:], z[half:], False))
+    line = np.column_stack([x, z])[: half + 1]
+    half_width = np.array([0.0, 2.0])
+    band = SectionBand(line - half_width, line + half_width)
+    low = (Trace(x[: half + 1], z[: half + 1], True, band), Trace(x[half:], z[half:], False))
     track = np.array([[0.25 * length, 140.0], [0.25 * length + 3, 60.0]])
     hole = HoleTrack("ZK1", track, 3.0, (Interval("clay", track, "a.csv"), Interval("岩", track, "b.csv")))
     line = np.array([[5e5, 3e6], [5e5 + length, 3e6]])

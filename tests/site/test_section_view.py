@@ -10,10 +10,12 @@ import pytest
 from geofit.data.errors import SettingsError
 from geofit.data.logs import IntervalLog, LoggedHoles
 from geofit.data.points import PointSet
-from geofit.data.prediction import Uncertainty
 from geofit.data.site import Ground, Hole, Site
+from geofit.fitting.calibration import BAND
 from geofit.fitting.pipeline import fit_horizon
-from geofit.site.section_view import NINETY, lithologies, parallel_lines, section_view
+from geofit.prediction.bands import prediction_sd
+from geofit.prediction.examine import examine
+from geofit.site.section_view import lithologies, parallel_lines, section_view
 
 LINE = np.array([[0.0, 100.0], [200.0, 100.0]])
 
@@ -48,13 +50,15 @@ def surface(site):
 
 
 def test_traces_lie_on_the_surface_and_say_where_they_are_supported(site, surface):
-    ends = np.array([0.0, 200.0])
-    grid = Uncertainty(ends, ends, np.full((2, 2), 0.5), 1.0, 0.5, 0.5, np.ones((2, 2)))
-    view = section_view(site, {"low": surface}, LINE, 20.0, uncertainty={"low": grid})
+    uncertainty = examine(surface).uncertainty
+    view = section_view(site, {"low": surface}, LINE, 20.0, uncertainty={"low": uncertainty})
     assert view.length == 200.0
     for one in view.traces["low"]:
         np.testing.assert_allclose(one.z, 110 - 0.2 * one.distance, atol=1e-3)
-        np.testing.assert_allclose(one.band, NINETY * 0.5)
+        places = np.column_stack([one.distance, np.full(len(one.z), 100.0)])
+        half = BAND * prediction_sd(surface, uncertainty, places, "contact")
+        np.testing.assert_allclose(one.band.upper, np.column_stack([one.distance, one.z + half]), atol=1e-9)
+        np.testing.assert_allclose(one.band.lower, np.column_stack([one.distance, one.z - half]), atol=1e-9)
     cut = section_view(site, {"low": surface}, [[0, 100], [48, 100], [100, 100], [200, 100]], 20.0).traces["low"]
     solid = np.concatenate([one.distance for one in cut if one.supported])
     dashed = np.concatenate([one.distance for one in cut if not one.supported])
