@@ -113,7 +113,8 @@ def choose_field(data: Data, settings: FitSettings, most: int, sketched: Sequenc
     rivals = [
         one
         for one in firsts
-        if one.field.alpha <= degree < firsts[0].field.alpha and LOUDER * one.field.noise < firsts[0].field.noise
+        if one.field.alpha <= degree < firsts[0].field.alpha
+        and (LOUDER * one.field.noise < firsts[0].field.noise or one.value < firsts[0].value + GAIN)
     ]
     best = min((resolved(one) for one in (firsts[0], *rivals[:1])), key=lambda level: level.value)
     space, field = best.space, best.field
