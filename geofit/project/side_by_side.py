@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from importlib import import_module
 from typing import TypeVar
 
 from geofit.data.errors import Cancelled
@@ -20,14 +21,8 @@ __all__ = ["Crew", "available", "crew"]
 
 T = TypeVar("T")
 
-#: What a process imports before the first work comes, while the fits are still under way.
-HEAVY = (
-    "geofit.cad.step", "geofit.cad.read_back", "geofit.cad.sewing", "geofit.prediction.examine",
-    "geofit.report.pictures", "geofit.report.section_sheet", "geofit.report.contour_plan",
-    "geofit.checks.storage", "geofit.report.schema", "geofit.report.tables", "OCP.BRepBuilderAPI", "pyvista.plotting",
-    "vtkmodules.vtkViewsCore", "matplotlib.backends.backend_agg", "matplotlib.figure", "scipy.optimize",
-    "scipy.spatial", "shapely",
-)  # fmt: skip
+#: Imports what a process needs; where processes are forked, the one that they are forked from.
+PRELOAD = "geofit.project.preload"
 #: Seconds between two looks at Cancel.
 LOOK = 0.1
 
@@ -130,7 +125,7 @@ def crew(size: int) -> Iterator[Crew]:
         return
     context = multiprocessing.get_context("forkserver" if sys.platform.startswith("linux") else "spawn")
     if sys.platform.startswith("linux"):
-        context.set_forkserver_preload(list(HEAVY))
+        context.set_forkserver_preload([PRELOAD])
     pool = ProcessPoolExecutor(size, mp_context=context, initializer=_begin)
     hands = Crew(pool)
     try:
@@ -146,9 +141,10 @@ def crew(size: int) -> Iterator[Crew]:
 
 
 def _begin() -> None:
-    """Leave Ctrl-C to the process that gives the work, and one core to each process."""
+    """Import what the work needs, leave Ctrl-C to the process that gives it, and one core to each process."""
     from threadpoolctl import threadpool_limits
 
+    import_module(PRELOAD)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threadpool_limits(limits=1)
 
