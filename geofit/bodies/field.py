@@ -67,6 +67,8 @@ class BodyField:
 
     def value(self, xyz: Floats) -> Floats:
         """Return the values (n,) at (n, 3) places about the local origin."""
+        if not self.cut and self._holds(xyz):
+            return self._raw(xyz)
         near = np.clip(xyz, self.lower, self.upper)
         beyond = np.linalg.norm(xyz - near, axis=1)
         value = self._raw(near)
@@ -75,6 +77,8 @@ class BodyField:
 
     def gradient(self, xyz: Floats) -> Floats:
         """Return the gradients (n, 3) at (n, 3) places about the local origin."""
+        if not self.cut and self._holds(xyz):
+            return self.frame.gradient(self.interpolant.gradient(xyz @ self.frame.matrix.T))
         near = np.clip(xyz, self.lower, self.upper)
         off = xyz - near
         beyond = np.linalg.norm(off, axis=1)
@@ -116,6 +120,11 @@ class BodyField:
             places = np.clip((least[:, None] + around).reshape(-1, 2), low, high)
             step = 2 * step / (_FINER - 1)
         return False
+
+    def _holds(self, xyz: Floats) -> bool:
+        """Whether all places are in the box: most are asked for along the surface."""
+        sides = zip(xyz.T, self.lower.tolist(), self.upper.tolist(), strict=True)
+        return all(low <= x.min(initial=low) and x.max(initial=low) <= high for x, low, high in sides)
 
     def _raw(self, xyz: Floats) -> Floats:
         return self.interpolant.value(xyz @ self.frame.matrix.T)

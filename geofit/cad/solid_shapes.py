@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.cad.faces import explore, free_edges, to_geom
+from geofit.cad.faces import explore, faces_of, free_edges, from_geom, to_geom
 from geofit.data.errors import StitchError
 from geofit.data.messages import message
 from geofit.implicit.mesh import TriangleMesh
@@ -20,6 +20,8 @@ Floats = NDArray[np.float64]
 
 #: Edges nearer than this (metres) are one edge: neighbours share their control points.
 SEWING = 1e-6
+#: Cells along each side of a face, by which a shell shows whether its faces look inwards.
+CELLS = 8
 
 
 def patch_solid(components: Sequence[Sequence[Patch]]) -> Any:
@@ -107,7 +109,7 @@ def _solids(shells: Sequence[Any]) -> Any:
 
     makers, boxes, cavities = [], [], []
     for shell in shells:
-        if volume_of(shell) < 0:
+        if _inward(shell):
             cavities.append(shell)
         else:
             makers.append(BRepBuilderAPI_MakeSolid(shell))
@@ -138,6 +140,25 @@ def _solids(shells: Sequence[Any]) -> Any:
             )
         )
     return result
+
+
+def _inward(shell: Any) -> bool:
+    """Whether the faces of a closed shell look inwards: by the volume under cells of their surfaces, which are whole.
+
+    OpenCASCADE's own volume is exact, and takes a hundred times as long.
+    """
+    from OCP.BRep import BRep_Tool
+    from OCP.TopAbs import TopAbs_REVERSED
+
+    share, total = np.linspace(0, 1, CELLS + 1), 0.0
+    for face in faces_of(shell):
+        patch = from_geom("", BRep_Tool.Surface_s(face))
+        u0, u1, v0, v1 = patch.domain
+        xyz = patch.evaluate(u0 + share[:, None] * (u1 - u0), v0 + share[None] * (v1 - v0))
+        a, b, c, d = xyz[:-1, :-1], xyz[1:, :-1], xyz[1:, 1:], xyz[:-1, 1:]
+        volume = float(((a + b + c + d) * np.cross(c - a, d - b)).sum())
+        total += -volume if face.Orientation() == TopAbs_REVERSED else volume
+    return total < 0
 
 
 def volume_of(shape: Any) -> float:

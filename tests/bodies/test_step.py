@@ -19,10 +19,11 @@ from geofit.bodies.quads import patched_surface
 from geofit.bodies.settings import BodySettings
 from geofit.cad.faces import explore
 from geofit.cad.solid_mesh import solid_triangles
-from geofit.cad.solid_shapes import patch_solid
+from geofit.cad.solid_shapes import patch_solid, volume_of
 from geofit.cad.step import read_shapes
 from geofit.implicit.mesh import TriangleMesh
 from geofit.io.boreholes import read_boreholes
+from geofit.splines.patch import Patch
 
 SAMPLE = Path(__file__).parents[2] / "sample_data" / "bodies"
 
@@ -172,3 +173,25 @@ def test_sharp_bodies_keep_their_creases(name: str, tmp_path: Path) -> None:
     # The two bodies of a crease meet at its true angle there: its places are on both, and triangles cut it off.
     mesh = solid_triangles(read_shapes(tmp_path / "body.step")[0].shape)
     assert np.abs(body.field.value(mesh.vertices)).max() <= body.epsilon / 2
+
+
+def cube(low: float, high: float, *, outward: bool) -> list[Patch]:
+    """Return the faces of a cube as patches of degree 1."""
+    faces, knots = [], np.array([0.0, 0.0, 1.0, 1.0])
+    for axis in range(3):
+        for side in (low, high):
+            u, v = np.meshgrid([low, high], [low, high], indexing="ij")
+            control = np.empty((2, 2, 3))
+            control[..., axis], control[..., (axis + 1) % 3], control[..., (axis + 2) % 3] = side, u, v
+            # u x v looks along the axis, which is outwards on its upper side.
+            if (side == high) != outward:
+                control = control.transpose(1, 0, 2)
+            faces.append(Patch(f"{axis}{side}", (1, 1), knots, knots, control))
+    return faces
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_patches_that_look_inwards_are_a_cavity_of_the_solid_around_them(first: int) -> None:
+    parts = [cube(0.0, 10.0, outward=True), cube(2.0, 5.0, outward=False)]
+    assert volume_of(patch_solid([parts[first], parts[1 - first]])) == pytest.approx(1000 - 27)
+    assert volume_of(patch_solid([cube(0.0, 10.0, outward=True), cube(20.0, 23.0, outward=True)])) == pytest.approx(1027)
