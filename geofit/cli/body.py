@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from geofit.cli.app import app
+from geofit.cli.body_lines import BodyLines, body_lines
 from geofit.cli.console import listening, print_counts, print_issues, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Author, Certificate, Json, Lang, LanguageCode, Organisation, OriginChoice, Out, Report
 from geofit.cli.signing import read_origin, signed_by
@@ -89,7 +90,7 @@ def body(
     if as_json:
         print_json({**run.figures(), "files": [str(file) for file in run.files]})
     else:
-        print_body(run)
+        print_body(body_lines(run))
     _print_issues(run)
     if drawn is not None and drawn.outlines:
         for question in section_questions(drawn.outlines, run.body):
@@ -173,33 +174,8 @@ def _print_issues(run: BodyRun) -> None:
         say(f"{'note' if used else 'not used'}: {texts[0]}{more}")
 
 
-def print_body(run: BodyRun) -> None:
+def print_body(found: BodyLines) -> None:
     """Print the figures of a body as a table."""
-    from geofit.report.digits import metres
-
-    a, volumes, file = run.accuracy, run.volumes, run.read_back
-    sound = not run.failed_checks
-    reasons = [check.text for check in file.checks if check.name == "grade"]
-    rows = [
-        ("verdict", run.verdict.word if sound or not a.passed else f"{run.verdict.word} (!)"),
-        ("contacts", str(a.n)),
-        ("sigma, m", f"{metres(a.sigma)} {'<' if a.passed else '>='} {a.epsilon:g}"),
-        ("largest residual, m", metres(a.max_abs)),
-        ("volume, m3", f"{volumes.best:.6g}"),
-        ("its numerical error, m3", f"{volumes.error:.1f}"),
-        ("volume P10, m3", f"{volumes.p10:.6g}"),
-        ("volume P50, m3", f"{volumes.p50:.6g}"),
-        ("volume P90, m3", f"{volumes.p90:.6g}"),
-        ("logged, m", f"{a.logged_length:.2f}"),
-        ("logged inside, lies outside, m", f"{a.missed_length:.2f}"),
-        ("logged outside, lies inside, m", f"{a.excess_length:.2f}"),
-        ("surface far from data", f"{a.far_share:.1%} beyond {a.far_distance:.1f} m"),
-        (
-            "STEP, read back",
-            f"solids: {file.solids}, {file.grade}, {'passed' if file.passed else 'FAILED'}",
-        ),
-    ]
-    print_table(("body", run.body.name), rows, left=(0, 1))
-    say(f"{run.body.name}: {run.verdict.text}")
-    for reason in reasons:
-        say(reason)
+    print_table(("body", found.name), found.rows, left=(0, 1))
+    for sentence in found.sentences:
+        say(sentence)

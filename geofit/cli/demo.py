@@ -10,6 +10,7 @@ import typer
 
 from geofit.cli.app import app
 from geofit.cli.body import print_body
+from geofit.cli.body_lines import fit_and_describe
 from geofit.cli.console import listening, say, with_exit_code
 from geofit.cli.options import Json, Out
 from geofit.cli.running import run_site
@@ -34,19 +35,17 @@ def demo(
 
     # Before anything else is imported here: the processes import what they need meanwhile.
     with listening() as progress, crew(available()) as hands:
-        from geofit.io.site_file import load_site, read_site
-        from geofit.project.body_run import run_body
+        from geofit.io.site_file import read_site
 
         site_file = _sample(out)
+        begun = hands.begin(partial(fit_and_describe, site_file.with_name("bodies.toml"), BODY, out / "bodies"))
         site = read_site(site_file)
-        lens = load_site(site_file.with_name("bodies.toml"))
-        begun = hands.begin(partial(run_body, lens, out / "bodies", codes=BODY))
         code = run_site(site, out, (), {"robust": True} if robust else {}, as_json, progress, hands=hands)
-        run = begun()
+        found = begun()
     if not as_json:
-        print_body(run)
-    say(f"Body {BODY}: {len(run.files)} files in {out / 'bodies'}")
-    return max(code, run.exit_code)
+        print_body(found)
+    say(f"Body {BODY}: {found.files} files in {out / 'bodies'}")
+    return max(code, found.exit_code)
 
 
 def _sample(out: Path) -> Path:

@@ -213,6 +213,8 @@ def _write_results(
     report: AccuracyReport | None = None
     if results:
         tell(progress, "report", 0.9)
+        bare = [replace(result, surface=result.surface.with_(model=None)) for result in results]
+        drawn = [hands.begin(partial(draw_sections, bare, (section,), language)) for section in sections]
         ordered, unordered = _orders(site, fits)
         orders = ordered or ()
         results = _with_orders(results, orders, fits)
@@ -225,7 +227,8 @@ def _write_results(
             sections=sections,
         )  # fmt: skip
         font = _font_warning(results)
-        images |= draw_sections(results, sections, language)
+        for section in drawn:
+            images |= section()
         for data in whole.images.values():
             with replacing(out / "site.png") as picture:
                 picture.write_bytes(data)
@@ -459,7 +462,6 @@ def _write_report(
     """Write the report in its forms; ``whole`` shows the site, ``images`` its horizons."""
     from geofit.report.chapters import document
     from geofit.report.html import write_html
-    from geofit.report.pdf import write_pdf
     from geofit.report.schema import report_document, write_json
 
     pages = document(report, language, missing_picture=whole.missing, warning=warning, bodies=bodies)
@@ -469,6 +471,8 @@ def _write_report(
     if "html" in forms:
         write_html(pages, pictures, out / "report.html")
     if "pdf" in forms:
+        from geofit.report.pdf import write_pdf
+
         write_pdf(pages, pictures, out / "report.pdf")
 
 
