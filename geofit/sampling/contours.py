@@ -12,7 +12,7 @@ from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
 from geofit.geometry.mesh import Mesh
-from geofit.sampling.isolines import plane_lines
+from geofit.sampling.isolines import level_lines
 from geofit.surfaces.protocol import Surface
 
 __all__ = ["ContourLine", "contours", "interval_for"]
@@ -99,10 +99,13 @@ def contours(
                 least=(high - low) / MOST,
             )
         )
+    levels = [round(k * step, 9) for k in range(first, last + 1)]
+    if not levels:
+        return []
     found = []
-    for k in range(first, last + 1):
-        elevation = round(k * step, 9)
-        for line in plane_lines(surface, mesh, np.array([0.0, 0.0, 1.0]), elevation - surface.origin[2]):
+    cuts = level_lines(surface, mesh, np.array([0.0, 0.0, 1.0]), [level - surface.origin[2] for level in levels])
+    for elevation, lines in zip(levels, cuts, strict=True):
+        for line in lines:
             closed = bool(np.array_equal(line[0], line[-1]))
             if np.ptp(line, axis=0).max() > 0:
                 found.append(ContourLine(elevation, line[:, :2] + surface.origin[:2], closed))

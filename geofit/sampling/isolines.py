@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,7 +13,7 @@ from geofit.geometry.mesh import Mesh
 from geofit.splines.patch import Patch
 from geofit.surfaces.protocol import Surface
 
-__all__ = ["plane_lines"]
+__all__ = ["level_lines", "plane_lines"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -21,7 +24,12 @@ STEPS = 20
 
 
 def plane_lines(surface: Surface, mesh: Mesh, normal: Floats, offset: float) -> list[Floats]:
-    """Return the lines in which the plane ``normal . x = offset`` cuts a surface.
+    """Return the lines in which the plane ``normal . x = offset`` cuts a surface; see :func:`level_lines`."""
+    return level_lines(surface, mesh, normal, [offset])[0]
+
+
+def level_lines(surface: Surface, mesh: Mesh, normal: Floats, offsets: Sequence[float]) -> list[list[Floats]]:
+    """Return for each of some parallel planes ``normal . x = offset`` the lines in which it cuts a surface.
 
     Parameters
     ----------
@@ -30,23 +38,45 @@ def plane_lines(surface: Surface, mesh: Mesh, normal: Floats, offset: float) -> 
     mesh : Mesh
         Its triangles (:func:`geofit.geometry.mesh.triangulate`), which decide how many vertices a line gets.
     normal : (3,) array
-        Unit normal of the plane.
-    offset : float
-        Where it stands, in the coordinates of the mesh (local, metres).
+        Unit normal of the planes.
+    offsets : sequence of float
+        Where they stand, in the coordinates of the mesh (local, metres).
 
     Returns
     -------
-    list of (k, 3) array
+    list of list of (k, 3) array
         Lines in local coordinates; a closed one ends where it began. Their vertices lie on the surface, and
         on the plane to 1e-7 m, but for a place where the surface only touches the plane: there they stay
         on the triangles.
     """
-    value = mesh.points @ normal - offset
+    height = mesh.points @ normal
+    traced = [_traced(mesh, height - offset) for offset in offsets]
+    points = np.concatenate([one.points for one in traced])
+    counts = [len(one.points) for one in traced]
+    if surface.patches:  # the triangles of a file are the surface themselves
+        patch, uv = (np.concatenate(parts) for parts in zip(*((one.patch, one.uv) for one in traced), strict=True))
+        points = _refined(surface.patches, patch, uv, points, normal, np.repeat(np.asarray(offsets, float), counts))
+    places = np.split(points, np.cumsum(counts)[:-1])
+    return [[own[chain] for chain in one.chains] for own, one in zip(places, traced, strict=True)]
+
+
+@dataclass(frozen=True, eq=False)
+class _Traced:
+    """Where the edges of triangles cross a plane: places (n, 3), their patches and ``uv`` (n, 2); chains of them."""
+
+    points: Floats
+    patch: Ints
+    uv: Floats
+    chains: list[Ints]
+
+
+def _traced(mesh: Mesh, value: Floats) -> _Traced:
+    """Trace a plane through triangles; ``value`` is the height of their vertices above it."""
     above = value >= 0
     side = above[mesh.triangles]
     crossed = np.flatnonzero(side.any(axis=1) & ~side.all(axis=1))
     if not len(crossed):
-        return []
+        return _Traced(np.empty((0, 3)), np.empty(0, np.int64), np.empty((0, 2)), [])
     triangles, side = mesh.triangles[crossed], side[crossed]
     # The corner that stands alone on its side: both of its edges are crossed.
     lone = np.where(side.sum(axis=1) == 1, side.argmax(axis=1), (~side).argmax(axis=1))
@@ -65,27 +95,23 @@ def plane_lines(surface: Surface, mesh: Mesh, normal: Floats, offset: float) -> 
     # One place for an edge, whichever of its triangles it is taken from.
     first = np.unique(number, return_index=True)[1]
     patch = np.concatenate([mesh.patch[crossed]] * 2)[first]
-    points = np.concatenate(places)[first]
-    refined = points  # of a file's triangles, which are the surface themselves
-    if surface.patches:
-        refined = _refined(surface.patches, patch, np.concatenate(uvs)[first], points, normal, offset)
-    pairs = number.reshape(2, -1).T
-    return [refined[chain] for chain in chains_of(pairs, len(edges))]
+    chains = chains_of(number.reshape(2, -1).T, len(edges))
+    return _Traced(np.concatenate(places)[first], patch, np.concatenate(uvs)[first], chains)
 
 
 def _refined(
-    patches: tuple[Patch, ...], which: Ints, uv: Floats, points: Floats, normal: Floats, offset: float
+    patches: tuple[Patch, ...], which: Ints, uv: Floats, points: Floats, normal: Floats, offsets: Floats
 ) -> Floats:
-    """Move places along the surface onto the plane by the shortest way in space (Newton)."""
+    """Move places along the surface, each onto its own plane, by the shortest way in space (Newton)."""
     result = points.copy()
     for k in np.unique(which):
         patch, rows = patches[k], np.flatnonzero(which == k)
         u0, u1, v0, v1 = patch.domain
         low, high = np.array([u0, v0]), np.array([u1, v1])
-        place = uv[rows].clip(low, high)
+        place, level = uv[rows].clip(low, high), offsets[rows]
         for _ in range(STEPS):
             at = patch.evaluate(place[:, 0], place[:, 1])
-            off = at @ normal - offset
+            off = at @ normal - level
             if np.abs(off).max() <= EXACT:
                 break
             su = patch.evaluate(place[:, 0], place[:, 1], 1, 0)

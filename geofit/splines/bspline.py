@@ -99,22 +99,19 @@ def basis(knots: Floats, degree: int, x: ArrayLike, derivative: int = 0) -> tupl
     if derivative > degree:
         return first, np.zeros((len(x), degree + 1))
     low = degree - derivative
-    values = np.ones((len(x), 1))
-    around = knots[span[:, None] + np.arange(1 - degree, degree + 1)]
+    # Functions by places, not places by functions: numpy runs along the longer axis.
+    values = np.ones((1, len(x)))
+    around = knots[span + np.arange(1 - degree, degree + 1)[:, None]]
     for p in range(1, degree + 1):
         # One degree up: N_{i,p} from N_{i,p-1}; i runs over the p + 1 functions of the span.
-        left, right = around[:, degree - p : degree], around[:, degree : degree + p]
+        left, right = around[degree - p : degree], around[degree : degree + p]
         width = right - left
-        ratio = np.divide(values, width, out=np.zeros_like(values), where=width > 0)
-        raised = np.zeros((len(x), p + 1))
-        if p <= low:
-            raised[:, :-1] += ratio * (right - x[:, None])
-            raised[:, 1:] += ratio * (x[:, None] - left)
-        else:
-            raised[:, :-1] -= p * ratio
-            raised[:, 1:] += p * ratio
-        values = raised
-    return first, values
+        ratio = values / np.where(width > 0, width, np.inf)
+        falling, rising = (ratio * (right - x), ratio * (x - left)) if p <= low else (-p * ratio, p * ratio)
+        values = np.zeros((p + 1, len(x)))
+        values[:-1] += falling
+        values[1:] += rising
+    return first, np.ascontiguousarray(values.T)
 
 
 def collocation(knots: Floats, degree: int, x: ArrayLike, derivative: int = 0) -> Floats:

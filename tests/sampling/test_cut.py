@@ -10,6 +10,7 @@ from surfaces import ORIGIN, fold, height_field, horizon, lifted, nine
 from geofit.data.errors import SettingsError
 from geofit.sampling.contours import contours, interval_for
 from geofit.sampling.cut import cut_section
+from geofit.sampling.isolines import level_lines, plane_lines
 
 TOLERANCE = 0.05
 
@@ -133,3 +134,17 @@ def test_refuses_what_makes_no_section_or_too_many_contours():
         contours(surface, -1)
     with refused(SettingsError, "sampling.too-many-contours"):
         contours(surface, 1e-4)
+
+
+def test_planes_that_are_cut_together_give_the_lines_of_each_one_alone():
+    surface = horizon(nine()[1])
+    mesh, up = surface.triangulate(TOLERANCE), np.array([0.0, 0.0, 1.0])
+    heights = [float(h) for h in np.linspace(mesh.points[:, 2].min() - 1, mesh.points[:, 2].max() + 1, 9)]
+    together = level_lines(surface, mesh, up, heights)
+    assert not together[0]
+    assert not together[-1]
+    for height, lines in zip(heights, together, strict=True):
+        alone = plane_lines(surface, mesh, up, height)
+        assert len(lines) == len(alone)
+        for line, other in zip(lines, alone, strict=True):
+            np.testing.assert_allclose(line, other, atol=1e-9)
