@@ -95,12 +95,11 @@ def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -
     surface = result.surface
     raised = _raised([surface])
     place = _Place(surface.origin, raised)
-    meshes = [_mesh(surface, i, place) for i in range(len(surface.patches))]
-    z = np.concatenate([np.asarray(m["elevation"]) for m in meshes])
+    mesh = _mesh(surface, place)
+    z = np.asarray(mesh["elevation"])
     limits = (float(z.min()), max(float(z.max()), float(z.min()) + 1e-3))
-    for mesh in meshes:
-        _add_surface(plotter, mesh, cmap=elevation_colours(), clim=limits, scalars="elevation")
-        _add_contours(plotter, mesh, limits)
+    _add_surface(plotter, mesh, cmap=elevation_colours(), clim=limits, scalars="elevation")
+    _add_contours(plotter, mesh, limits)
     core = rims(surface, steps=400).get("core")
     if core is not None and len(surface.patches) > 1:
         _add_rim(plotter, surface, core, place, color="#0b2f4a", line_width=6)
@@ -124,9 +123,7 @@ def site_scene(
     place = _Place(surfaces[0].origin, raised)
     sheer = _opacities(surfaces)
     for i, surface in enumerate(surfaces):
-        for k in range(len(surface.patches)):
-            mesh = _mesh(surface, k, place)
-            _add_surface(plotter, mesh, color=HORIZONS[i % len(HORIZONS)], opacity=sheer[i])
+        _add_surface(plotter, _mesh(surface, place), color=HORIZONS[i % len(HORIZONS)], opacity=sheer[i])
         for rim in rims(surface, steps=400).values():
             _add_rim(plotter, surface, rim, place, color="#1c2733", line_width=2, opacity=0.35)
     for hole in holes:
@@ -267,20 +264,24 @@ def opengl_found() -> bool:
     return True
 
 
-def _mesh(surface: HorizonFit, index: int, place: _Place) -> pyvista.PolyData:
-    """One patch as triangles, cut along the outline of the study area."""
+def _mesh(surface: HorizonFit, place: _Place) -> pyvista.PolyData:
+    """Return the patches as triangles, cut along the outline of the study area."""
     import pyvista
 
-    patch = surface.patches[index]
-    u0, u1, v0, v1 = patch.domain
-    u, v = np.meshgrid(np.linspace(u0, u1, STEPS), np.linspace(v0, v1, STEPS), indexing="ij")
-    true = patch.evaluate(u, v) + surface.origin
-    grid = pyvista.StructuredGrid(*np.moveaxis(place(true), -1, 0)[:, :, :, None])
-    grid["elevation"] = true[..., 2].ravel(order="F")
+    share = np.linspace(0, 1, STEPS)
+    number = np.arange(STEPS**2).reshape(STEPS, STEPS)
+    a, b, c, d = (part.ravel() for part in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]))
+    triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    points = []
+    for patch in surface.patches:
+        u0, u1, v0, v1 = patch.domain
+        points.append(patch.evaluate(u0 + share[:, None] * (u1 - u0), v0 + share[None] * (v1 - v0)).reshape(-1, 3))
+    true = np.concatenate(points) + surface.origin
+    faces = (np.arange(len(points))[:, None, None] * STEPS**2 + triangles).reshape(-1, 3)
+    mesh = pyvista.PolyData.from_regular_faces(place(true), faces)
+    mesh["elevation"] = true[:, 2]
     if surface.outline is not None:
-        grid["inside"] = np.clip(trimmed(surface, true[..., 0], true[..., 1]), -1e6, 1e6).ravel(order="F")
-    mesh = grid.extract_surface(algorithm="dataset_surface").triangulate()
-    if surface.outline is not None:
+        mesh["inside"] = np.clip(trimmed(surface, true[:, 0], true[:, 1]), -1e6, 1e6)
         mesh = mesh.clip_scalar(scalars="inside", value=0.0, invert=False)
     return mesh
 

@@ -76,14 +76,13 @@ def _normals(patch: Patch) -> Floats:
 
 def rims(surface: HorizonFit, steps: int = 80) -> dict[str, Floats]:
     """Return the closed outline of every patch in map coordinates, (k, 3) each."""
-    outlines = {}
+    outlines, t = {}, np.linspace(0, 1, steps)
     for patch in surface.patches:
         u0, u1, v0, v1 = patch.domain
-        t = np.linspace(0, 1, steps)
-        one = np.ones(steps)
-        u = np.concatenate([u0 + (u1 - u0) * t, u1 * one, u1 - (u1 - u0) * t, u0 * one])
-        v = np.concatenate([v0 * one, v0 + (v1 - v0) * t, v1 * one, v1 - (v1 - v0) * t])
-        outlines[patch.name] = patch.evaluate(u, v) + surface.origin
+        u, v = (u0 + (u1 - u0) * t)[:, None], (v0 + (v1 - v0) * t)[None]
+        south, north = np.moveaxis(patch.evaluate(u, np.array([[v0, v1]])), 1, 0)
+        west, east = patch.evaluate(np.array([[u0], [u1]]), v)
+        outlines[patch.name] = np.concatenate([south, east, north[::-1], west[::-1]]) + surface.origin
     return outlines
 
 
@@ -95,6 +94,12 @@ def trimmed(surface: HorizonFit, x: Floats, y: Floats) -> Floats:
 
     polygon = shapely.Polygon(surface.outline)
     shapely.prepare(polygon)
-    places = shapely.points(x, y)
-    away = shapely.distance(polygon.exterior, places)
-    return np.asarray(np.where(shapely.covers(polygon, places), away, -away))
+    x, y = np.asarray(x), np.asarray(y)
+    away = np.full(x.shape, np.inf)
+    for start, end in zip(surface.outline, np.roll(surface.outline, -1, axis=0), strict=True):
+        way = end - start
+        share = ((x - start[0]) * way[0] + (y - start[1]) * way[1]) / max(float(way @ way), 1e-300)
+        share = share.clip(0, 1)
+        away = np.minimum(away, (x - start[0] - share * way[0]) ** 2 + (y - start[1] - share * way[1]) ** 2)
+    away = np.sqrt(away)
+    return np.asarray(np.where(shapely.intersects_xy(polygon, x, y), away, -away))
