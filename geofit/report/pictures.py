@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,7 +21,6 @@ from geofit.report.change_map import change_map
 from geofit.report.contour_plan import draw_contour_plan, plan_sheet
 from geofit.report.gather import SITE_PICTURE, cut_of, picture_name, section_picture
 from geofit.report.histogram import histogram, normal_plot
-from geofit.report.png import png_of
 from geofit.report.result import HorizonResult
 from geofit.report.section_sheet import draw_section, section_sheet
 from geofit.report.stereonet import StereonetContent, angles, stereonet
@@ -224,11 +224,14 @@ def _space(view: Scene, t: Language) -> bytes:
 def png(figure: Figure, margin: int = 0) -> bytes:
     """Return a figure as PNG: no transparency, no version of matplotlib, no white rows above and below."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from PIL import Image
 
     canvas: Any = FigureCanvasAgg(figure)
     canvas.draw()
-    pixels = np.asarray(canvas.buffer_rgba())
+    pixels = np.asarray(canvas.buffer_rgba())[..., :3]
     drawn = np.flatnonzero(pixels.reshape(len(pixels), -1).min(axis=1) < 250)
     if drawn.size:
         pixels = pixels[max(drawn[0] - margin, 0) : drawn[-1] + 1 + margin]
-    return png_of(pixels[..., :3])
+    stream = io.BytesIO()
+    Image.fromarray(pixels).save(stream, format="PNG", compress_level=4)
+    return stream.getvalue()
