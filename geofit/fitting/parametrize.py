@@ -33,6 +33,10 @@ SAME = 1e-6
 PLANAR = 0.3
 #: Share of a section's length that may run backwards before the section counts as overturned.
 OVERTURNED = 0.02
+#: Points narrower than this share of their length in their best plane lie in a row.
+ROW = 0.2
+#: Ratio of F by which heights must follow the places across a row before they show a dip there.
+SHOWN = 16.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,6 +139,13 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
     if dip < STEEP and over_map <= OVERTURNED:
         return "map", message("fitting.frame-map", "height field over the map (mean dip {dip:.0f}°)", dip=dip)
     extent = np.ptp(plane.to_local(points.xyz), axis=0)
+    if over_map <= OVERTURNED and min(extent[:2]) < ROW * max(extent[:2]) and not _upright(points):
+        return "map", message(
+            "fitting.frame-map-in-a-row",
+            "height field over the map: the points lie in a row of {length:.0f} m and do not show that the surface is "
+            "steep, neither from one to the next nor across the row; an upright fault there needs frame='best-plane'",
+            length=float(max(extent[:2])),
+        )
     thin = extent[2] <= PLANAR * min(extent[0], extent[1])
     over_plane = backtracking(points, plane)
     steep = message("fitting.frame-best-plane", "height field over its best plane: it dips {dip:.0f}°", dip=dip)
@@ -181,6 +192,23 @@ def _dip(points: PointSet, plane: Frame) -> float:
         steep = np.linalg.svd(np.column_stack([along, xyz[:, 2]]), full_matrices=False)[2][0]
         return float(np.degrees(np.arctan2(abs(steep[1]), abs(steep[0]))))
     return float(np.degrees(np.arccos(np.clip(plane.axes[2, 2], -1, 1))))
+
+
+def _upright(points: PointSet) -> bool:
+    """Return whether a row of points shows that the surface is steep: from one to the next, or across the row.
+
+    Rough heights of holes in one row are as thin as a plane that stands on edge, but their neighbours differ little in
+    height for their distance, and their heights do not follow the places across the row.
+    """
+    xyz = points.xyz - points.xyz.mean(axis=0)
+    along, across = (xyz[:, :2] @ axis for axis in np.linalg.svd(xyz[:, :2], full_matrices=False)[2])
+    step = np.abs(np.diff(xyz[np.argsort(along, kind="stable")], axis=0))
+    if np.median(step[:, 2]) > np.tan(np.radians(STEEP)) * np.median(np.hypot(step[:, 0], step[:, 1])):
+        return True
+    height = xyz[:, 2] - along * (along @ xyz[:, 2]) / (along @ along)
+    explained = (across @ height) ** 2
+    left = (across @ across) * (height @ height) - explained
+    return bool(explained * (len(xyz) - 3) > SHOWN * left)
 
 
 def direction_of(section: NDArray[np.str_], points: PointSet, boundary: Floats | None) -> float | None:

@@ -57,6 +57,27 @@ def test_a_vertical_fault_seen_by_scattered_points_is_no_height_field():
     assert parametrization.frame.kind == "best-plane"
 
 
+@pytest.mark.parametrize(("count", "aside"), [(8, 3.0), (25, 0.0)])
+def test_rough_rock_in_a_row_of_holes_is_no_upright_plane(count, aside):
+    rng = np.random.default_rng(0)
+    along, across = 30.0 * np.arange(count), rng.normal(0, aside, count)
+    plan = np.outer(along, (0.8, 0.6)) + np.outer(across, (-0.6, 0.8)) + (EASTING, NORTHING)
+    points = PointSet(np.column_stack([plan, 500 + rng.normal(0, 6, count)]), kind="borehole")
+    parametrization = parametrize(points, SETTINGS, None)
+    assert parametrization.frame.kind == "map"
+    assert np.isfinite(fit_horizon(points).elevation(*points.xyz[:, :2].T)).all()
+
+
+@pytest.mark.parametrize(("dip", "high"), [(85, 120), (90, 300)])
+def test_a_long_upright_fault_is_no_height_field_over_the_map(dip, high):
+    rng, d = np.random.default_rng(5), np.radians(dip)
+    s, t, off = rng.uniform(0, 2000, 150), rng.uniform(0, high, 150), rng.normal(0, 0.5, 150)
+    down = np.array([np.cos(d), 0.0, -np.sin(d)])
+    xyz = s[:, None] * (0, 1, 0) + t[:, None] * down + off[:, None] * np.cross(down, (0, 1, 0))
+    parametrization = parametrize(PointSet(xyz + np.array((EASTING, NORTHING, 700))), SETTINGS, None)
+    assert parametrization.frame.kind == "best-plane"
+
+
 def test_one_section_is_a_height_field_over_the_map():
     t = np.linspace(0, 800, 40)
     points = PointSet(
