@@ -48,10 +48,12 @@ _ALWAYS = {
     "about",
 }  # fmt: skip
 #: What needs a horizon: a site may have bodies alone.
-_OF_HORIZONS = {
-    "fit", "fit_all", "examine", "check_order", "order", "separate", "worst", "exclude", "seams", "control_points",
-    "export_step", "export_other", "plan_sheet", "report", "faded",
+_OF_HORIZONS = {"fit", "fit_all", "order", "exclude", "faded"}
+#: What needs fitted surfaces, so many; and what needs one of the chosen horizon.
+_OF_SURFACES = {
+    "check_order": 2, "separate": 2, "export_step": 1, "export_other": 1, "plan_sheet": 1, "report": 1,
 }  # fmt: skip
+_OF_THE_SURFACE = {"examine", "worst", "seams", "control_points"}
 
 
 class MainWindow(QMainWindow):
@@ -299,6 +301,8 @@ class MainWindow(QMainWindow):
             (document.site_changed, self._on_site),
             (document.saved_changed, self._show_title),
             (document.name_changed, self._show_title),
+            (document.result_changed, lambda _: self._enable()),
+            (document.selection_changed, lambda _: self._enable()),
         ):
             signal.connect(listener)
             self._ends.append(lambda signal=signal, listener=listener: signal.disconnect(listener))  # type: ignore[misc]
@@ -328,9 +332,13 @@ class MainWindow(QMainWindow):
         """Enable what can be done with what is open."""
         document = self.session.document
         is_open, layered = document.is_open, bool(document.horizons)
+        surfaces, chosen = document.surfaces(), document.selection.horizon
         for name, action in self.actions_.all().items():
             if name not in _ALWAYS:
-                action.setEnabled(is_open and (layered or name not in _OF_HORIZONS))
+                given = (layered or name not in _OF_HORIZONS) and len(surfaces) >= _OF_SURFACES.get(name, 0)
+                # What is switched on can be switched off.
+                given &= chosen in surfaces or name not in _OF_THE_SURFACE or action.isChecked()
+                action.setEnabled(is_open and given)
         for name in ("fit", "fit_all"):
             self.actions_[name].setEnabled(layered and not self.showing.waiting)
         self.actions_["stop"].setEnabled(self.activity.busy)

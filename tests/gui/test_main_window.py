@@ -49,6 +49,29 @@ def small(tmp_path):
     return tmp_path / "site.toml"
 
 
+def test_what_needs_surfaces_can_be_done_once_there_are_as_many(app, small):
+    of_chosen, of_any, of_two = {"examine", "worst", "seams"}, {"export_step", "report"}, {"check_order", "separate"}
+    app.window.files.open(small)
+    app.idle()
+
+    def enabled():
+        return {name for name in of_chosen | of_any | of_two if app.window.actions_[name].isEnabled()}
+
+    assert not enabled()
+    app.trigger("fit")
+    app.idle()
+    assert enabled() == of_chosen | of_any
+    app.document.select("low")
+    assert enabled() == of_any, "nothing is fitted to the chosen horizon"
+    app.trigger("fit")
+    app.idle()
+    assert enabled() == of_chosen | of_any | of_two
+    app.trigger("seams")
+    app.window.session.stack.undo()
+    app.idle()
+    assert enabled() == of_any | {"seams"}, "what is switched on can be switched off"
+
+
 def test_every_action_has_words_a_tip_and_a_key_of_its_own(app):
     keys = {}
     for name, action in app.window.actions_.all().items():
