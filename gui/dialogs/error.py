@@ -40,7 +40,9 @@ class ErrorDialog(QDialog):
         sign = QLabel()
         size = self.style().pixelMetric(QStyle.PixelMetric.PM_LargeIconSize)
         sign.setPixmap(self.style().standardIcon(QStyle.StandardPixmap.SP_MessageBoxWarning).pixmap(size))
-        heading = QLabel(self.tr("{task} did not work.").format(task=title) if title else self.tr("Something failed."))
+        heading = QLabel(
+            self.tr("{task} did not work.").format(task=title) if title else self.tr("That cannot be done now.")
+        )
         font = heading.font()
         font.setBold(True)
         heading.setFont(font)

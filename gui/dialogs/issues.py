@@ -78,7 +78,7 @@ class _Issues(QAbstractTableModel):
     def __init__(self, issues: tuple[ImportIssue, ...], parent: QWidget) -> None:
         super().__init__(parent)
         rank = {"error": 0, "warning": 1, "note": 2}
-        words = {"error": self.tr("not used"), "warning": self.tr("look"), "note": self.tr("note")}
+        words = {"error": self.tr("not used"), "warning": self.tr("to check"), "note": self.tr("note")}
         self._rows = [
             (
                 words[i.severity],

@@ -69,7 +69,7 @@ class ImportWizard(TaskDialog):
         self.page.reading_changed.connect(self._read_again)
         self.page.exchange_requested.connect(self._exchange)
         self.crs = QLineEdit()
-        self.crs.setPlaceholderText("EPSG:4547")
+        self.crs.setPlaceholderText(self.tr("Optional, for example EPSG:4547"))
         self.crs.setToolTip(self.tr("Coordinate system of the site. Longitude and latitude are projected to it."))
         self.target = QLineEdit(str(self.site_file))
         self.target.textChanged.connect(self._hint)
@@ -235,7 +235,7 @@ class ImportWizard(TaskDialog):
         target = self._target()
         if self.pages.currentIndex():
             ready = self._made and self._sound
-            self.say(self.tr("The site is written; Cancel takes it away again.") if ready else "", "passed")
+            self.say(self.tr("The site is written. Cancel removes it again.") if ready else "", "passed")
         elif wanting:
             names = ", ".join(wanting[:NAMED]) + (f" … ({len(wanting)})" if len(wanting) > NAMED else "")
             self.say(self.tr("Unresolved: {names}").format(names=names), "failed")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
@@ -42,15 +44,16 @@ class ResultPage(QWidget):
         export = QPushButton(self.tr("&Export problems…"))
         export.clicked.connect(self.issues.export_action.trigger)
         above = QSplitter(Qt.Orientation.Horizontal)
-        above.addWidget(_titled(self.tr("Horizons"), self.horizons))
-        above.addWidget(_titled(self.tr("Files", "ResultPage"), self.files))
+        above.addWidget(_titled(QLabel(self.tr("Horizons")), self.horizons))
+        above.addWidget(_titled(QLabel(self.tr("Files", "ResultPage")), self.files))
         below = QHBoxLayout()
         below.addWidget(self.notes)
         below.addStretch()
         below.addWidget(export)
         parts = QSplitter(Qt.Orientation.Vertical)
         parts.addWidget(above)
-        problems = _titled(self.tr("Problems"), self.issues)
+        self.problems = QLabel(self.tr("Problems"))
+        problems = _titled(self.problems, self.issues)
         problems.layout().addLayout(below)  # type: ignore[union-attr]
         parts.addWidget(problems)
         parts.setStretchFactor(0, 2)
@@ -75,9 +78,10 @@ class ResultPage(QWidget):
             (TableColumn(self.tr("Horizon"), np.array(names, str)), TableColumn(self.tr("Points"), sizes, 0))
         )
         counts = found.counts
+        files = _short({count.file for count in counts} | {one.file for one in found.issues})
         self.files.show_columns(
             (
-                TableColumn(self.tr("File"), np.array([count.file for count in counts], str)),
+                TableColumn(self.tr("File"), np.array([files[count.file] for count in counts], str)),
                 *(
                     TableColumn(title, np.array([getattr(count, key) for count in counts], float), 0)
                     for title, key in (
@@ -91,8 +95,10 @@ class ResultPage(QWidget):
         for table in (self.horizons, self.files):
             table.horizontalHeader().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         issues = sorted(found.issues, key=lambda one: _ORDER[one.severity])
-        words = {"error": self.tr("not used"), "warning": self.tr("look"), "note": self.tr("note")}
+        words = {"error": self.tr("not used"), "warning": self.tr("to check"), "note": self.tr("note")}
         self._severity = np.array([_ORDER[one.severity] for one in issues], np.int64)
+        loud = int((self._severity < _ORDER["note"]).sum())
+        self.problems.setText(self.tr("Problems: {count}").format(count=loud) if loud else self.tr("Problems: none"))
         self.issues.show_columns(
             (
                 TableColumn(
@@ -101,7 +107,7 @@ class ResultPage(QWidget):
                     icons=lambda row: icon(_MARK[issues[row].severity]),
                     order=self._severity,
                 ),
-                TableColumn(self.tr("File"), np.array([one.file for one in issues], str)),
+                TableColumn(self.tr("File"), np.array([files[one.file] for one in issues], str)),
                 TableColumn(self.tr("Row"), np.array([one.row or np.nan for one in issues], float), 0),
                 TableColumn(self.tr("Column"), np.array([one.column for one in issues], str)),
                 TableColumn(self.tr("Value"), np.array([one.value for one in issues], str)),
@@ -121,13 +127,18 @@ class ResultPage(QWidget):
         self.issues.keep(None if self.notes.isChecked() else self._severity < _ORDER["note"])
 
 
-def _titled(title: str, table: DataTable) -> QWidget:
+def _short(paths: set[str]) -> dict[str, str]:
+    """Return what files are called: without their folders, where that leaves no two alike."""
+    names = {path: Path(path).name for path in paths}
+    return names if len(set(names.values())) == len(names) else {path: path for path in paths}
+
+
+def _titled(label: QLabel, table: DataTable) -> QWidget:
     box = QWidget()
     layout = QVBoxLayout(box)
     layout.setContentsMargins(0, 0, 0, 0)
-    label = QLabel(title)
     label.setBuddy(table)
-    table.setAccessibleName(title)
+    table.setAccessibleName(label.text())
     layout.addWidget(label)
     layout.addWidget(table)
     return box

@@ -36,6 +36,10 @@ from geofit.io.units import unit_marked
 __all__ = ["TablePage"]
 
 ENCODINGS = ("utf-8", "gb18030", "cp1252", "utf-16")
+#: What editors call them.
+ENCODING_NAMES = {
+    "utf-8": "UTF-8", "gb18030": "GB 18030", "cp1252": "Windows-1252", "utf-16": "UTF-16", "utf-8-sig": "UTF-8 (BOM)",
+}  # fmt: skip
 UNITS = ("", "m", "ft", "ft-us", "km", "cm", "mm")
 #: Ground of a cell that should hold a number and does not, on light and dark.
 BAD = {False: "#f6c5be", True: "#7c2f27"}
@@ -120,12 +124,13 @@ class TablePage(QWidget):
             self.kind.addItem(sure if guessed else kind_name(kind), kind)
         self.kind.setCurrentIndex(self.kind.findData(draft.kind))
         text = bool(preview.sep)
-        _fill(self.encoding, ENCODINGS, source.encoding or preview.encoding, draft.named_kind and text)
+        encoding = source.encoding or preview.encoding
+        _fill(self.encoding, ENCODINGS, encoding, draft.named_kind and text, ENCODING_NAMES)
         names = {
             ",": self.tr("comma"),
             ";": self.tr("semicolon"),
             "\t": self.tr("tab"),
-            " ": self.tr("blanks"),
+            " ": self.tr("spaces"),
             "|": "|",
         }
         _fill(self.separator, tuple(names), source.sep or preview.sep, draft.named_kind and text, names)
@@ -137,9 +142,9 @@ class TablePage(QWidget):
         marks = [plain_name(name)[1] or unit for name, unit in zip_longest(preview.header, preview.units, fillvalue="")]
         found = sorted({unit for mark in marks if (unit := unit_marked(mark)) is not None})
         return {
-            "": self.tr("as the headers mark: {units}").format(units=", ".join(found))
+            "": self.tr("as in the headers: {units}").format(units=", ".join(found))
             if found
-            else self.tr("m (not marked)"),
+            else self.tr("metres (not stated)"),
             "m": self.tr("metres"),
             "ft": self.tr("feet (0.3048 m)"),
             "ft-us": self.tr("US survey feet (1200/3937 m)"),

@@ -91,6 +91,33 @@ def test_chinese_headers_in_gb18030_with_decimal_commas_are_read(qtbot, tmp_path
     assert "base of Q" in wizard.results.horizons.rows.columns[0].values
 
 
+def test_encodings_have_the_names_that_editors_give_them(qtbot, tmp_path):
+    (tmp_path / "collar.csv").write_text(COLLAR, encoding="utf-8-sig")
+    page = opened(qtbot, tmp_path, tmp_path / "collar.csv").page
+    assert page.encoding.currentText() == "UTF-8 (BOM)"
+    assert page.encoding.currentData() == "utf-8-sig"
+    assert page.unit.currentText() == "metres (not stated)"
+
+
+def test_problems_are_counted_and_files_of_other_folders_named_without_them(qtbot, tmp_path):
+    data, site = tmp_path / "data", tmp_path / "a" / "b"
+    data.mkdir()
+    site.mkdir(parents=True)
+    (data / "collar.csv").write_text("hole,east,north,elevation\nA,1,2,3\nB,4,5,6\nC,7,9,8\n")
+    log = "hole,from,to,code\nA,0,5,Q\nA,5,9,T\nB,0,4,Q\nB,4,9,T\nC,0,6,Q\nC,6,9,T\n"
+    (data / "log.csv").write_text(log)
+    wizard = opened(qtbot, site, data / "collar.csv", data / "log.csv")
+    press(qtbot, wizard, wizard.go)
+    assert wizard.results.problems.text() == "Problems: none"
+    assert wizard.results.files.rows.columns[0].values.tolist() == ["collar.csv", "log.csv"]
+    press(qtbot, wizard, wizard.back)
+    (data / "log.csv").write_text(log + "D,0,3,Q\n")
+    press(qtbot, wizard, wizard.go)
+    issues = wizard.results.issues.rows.columns[1]
+    assert wizard.results.problems.text() == "Problems: 1"
+    assert issues.text(0) == "log.csv"
+
+
 def test_nothing_is_read_while_a_required_role_is_missing(qtbot, tmp_path):
     (tmp_path / "collar.csv").write_text("hole,east,north,elevation\nA,1,2,3\nB,4,5,6\nC,7,9,8\n")
     wizard = opened(qtbot, tmp_path, tmp_path / "collar.csv")
@@ -300,7 +327,7 @@ def test_lengths_in_feet_become_metres(qtbot, tmp_path):
 def test_feet_in_a_header_are_said_and_can_be_overruled(qtbot, tmp_path):
     (tmp_path / "points.csv").write_text("x (ft),y (ft),z (ft)\n100,200,300\n400,500,600\n800,700,900\n")
     wizard = opened(qtbot, tmp_path, tmp_path / "points.csv")
-    assert wizard.page.unit.currentText() == "as the headers mark: ft"
+    assert wizard.page.unit.currentText() == "as in the headers: ft"
     press(qtbot, wizard, wizard.go)
     points = next(iter(read_site(wizard.site_file).horizons.values()))
     assert points.xyz[0] == pytest.approx([30.48, 60.96, 91.44])
