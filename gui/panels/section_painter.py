@@ -22,7 +22,7 @@ from geofit.report.style import horizon_colours, kind_style, quiet_axes
 from geofit.site.hole_logs import hole_intervals, log_files
 from geofit.site.support import support_of
 
-__all__ = ["SectionData", "explain", "near_points", "paint_section", "seen_in", "thin_names"]
+__all__ = ["TINT", "SectionData", "explain", "near_points", "paint_section", "seen_in", "thin_names"]
 
 Floats = NDArray[np.float64]
 
@@ -33,6 +33,8 @@ FREE, NOTE = 8.0, 20.0
 #: Height of a line of the legend, logical pixels.
 ROW = 16.0
 GROUND = "#6b7d3a"
+#: Opacity of the 90 % bands, which must be seen on dark paper, too.
+TINT = 0.3
 #: Half width of a hole's column of lithology, as a share of the section's length.
 COLUMN = 0.004
 #: Where a surface is above the ground or beyond its data.
@@ -110,7 +112,7 @@ def paint_section(axes: Axes, data: SectionData, colours: PlotColours, words: Ma
                 named |= first
             if band is not None:
                 axes.fill(
-                    *band.outline.T, color=colour, alpha=0.18, lw=0, label=None if banded else words["band"], zorder=1
+                    *band.outline.T, color=colour, alpha=TINT, lw=0, label=None if banded else words["band"], zorder=1
                 )
                 banded = True
     _holes(axes, data, colours)

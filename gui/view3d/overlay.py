@@ -89,7 +89,7 @@ def draw_overlay(painter: QPainter, view: Projector, content: Content, theme: Th
     for ring in content.rings:
         _ring(painter, view, ring, theme)
     for title, legend, box in legends:
-        _plate(painter, box, theme, 205)
+        _plate(painter, box, theme, 235)
         draw_legend(painter, box, title, legend, theme)
     _directions(painter, view, content.directions, theme)
     painter.setFont(font)

@@ -10,7 +10,7 @@ from PySide6.QtCore import QPoint, Qt
 from geofit.gui import worker
 from geofit.gui.panels.curtain import Curtain
 from geofit.gui.panels.section import SectionPanel
-from geofit.gui.panels.section_painter import near_points
+from geofit.gui.panels.section_painter import TINT, near_points
 from geofit.gui.panels.section_scale import SectionExtent, automatic, window
 from geofit.prediction.bands import prediction_sd
 from geofit.prediction.examine import examine
@@ -153,7 +153,7 @@ def test_steep_and_folded_surfaces_have_their_bands(panel, qtbot, name):
 
 
 def bands(panel):
-    return [patch for patch in panel.canvas.figure.axes[0].patches if patch.get_alpha() == 0.18]
+    return [patch for patch in panel.canvas.figure.axes[0].patches if patch.get_alpha() == TINT]
 
 
 def test_exaggeration_is_what_is_drawn(panel, qtbot):
