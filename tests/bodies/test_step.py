@@ -194,4 +194,6 @@ def cube(low: float, high: float, *, outward: bool) -> list[Patch]:
 def test_patches_that_look_inwards_are_a_cavity_of_the_solid_around_them(first: int) -> None:
     parts = [cube(0.0, 10.0, outward=True), cube(2.0, 5.0, outward=False)]
     assert volume_of(patch_solid([parts[first], parts[1 - first]])) == pytest.approx(1000 - 27)
-    assert volume_of(patch_solid([cube(0.0, 10.0, outward=True), cube(20.0, 23.0, outward=True)])) == pytest.approx(1027)
+    assert volume_of(patch_solid([cube(0.0, 10.0, outward=True), cube(20.0, 23.0, outward=True)])) == pytest.approx(
+        1027
+    )
