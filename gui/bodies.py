@@ -271,7 +271,7 @@ class Bodies(QObject):
             if left:
                 text = message(
                     "gui.log-body-not-covered",
-                    "{name} is not divided by {names}: they do not cross all of it",
+                    "These do not cover all of body {name}: {names}",
                     name=name,
                     names=", ".join(left),
                 )

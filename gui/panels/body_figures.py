@@ -105,7 +105,7 @@ class BodyFigures(QWidget):
             [
                 TableColumn(self.tr("Part", "BodyFigures"), np.array([part for part, _, _ in rows])),
                 TableColumn(self.tr("Pieces"), np.array([pieces for _, pieces, _ in rows]), 0),
-                *(TableColumn(title, figures[:, k], 0, about, grouped=True) for k, (title, about) in enumerate(titles)),
+                *(TableColumn(title, figures[:, k], 0, about) for k, (title, about) in enumerate(titles)),
             ]
         )
 

@@ -69,7 +69,7 @@ class TableColumn:
     """A column: its title, its values (n,), and with how many digits numbers are written (nan stays empty).
 
     ``icons`` returns the mark before a cell; ``order`` is what the column sorts by, where that is not the values.
-    ``coordinate``: they are eastings or northings. ``grouped``: with gaps between thousands.
+    ``coordinate``: they are eastings or northings.
     """
 
     title: str
@@ -79,19 +79,9 @@ class TableColumn:
     icons: Callable[[int], QIcon | None] | None = None
     order: ArrayLike | None = None
     coordinate: bool = False
-    grouped: bool = False
-
-    def cell(self, row: int) -> str:
-        """Return the cell as it is shown: with a true minus, which no spreadsheet reads."""
-        text = self.text(row)
-        if not self.number:
-            return text
-        if self.grouped and text:
-            text = f"{float(text):,.{self.digits}f}".replace(",", "\N{THIN SPACE}")
-        return text.replace("-", "\N{MINUS SIGN}")
 
     def text(self, row: int) -> str:
-        """Return the cell as it is exported."""
+        """Return the cell as it is shown."""
         value = self.values[row]
         if self.digits is None:
             return str(value)
@@ -178,7 +168,7 @@ class ArrayModel(QAbstractTableModel):
         """Return what a cell shows."""
         column = self.columns[index.column()]
         if role == Qt.ItemDataRole.DisplayRole:
-            return column.cell(self._order[index.row()])
+            return column.text(self._order[index.row()])
         if role == Qt.ItemDataRole.TextAlignmentRole:
             return _RIGHT if column.number else _LEFT
         if role == Qt.ItemDataRole.DecorationRole and column.icons is not None:

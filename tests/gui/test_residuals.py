@@ -12,7 +12,6 @@ from PySide6.QtCore import QItemSelectionModel, Qt
 from PySide6.QtWidgets import QApplication
 
 from geofit.gui.panels.residuals import ResidualTable
-from geofit.gui.panels.tables import TableColumn
 from geofit.project.listing import listing as list_points
 from geofit.project.provenance import Row
 
@@ -113,13 +112,6 @@ def test_copy_gives_tab_separated_text_of_the_selected_rows(panel):
     assert len(lines) == 3
     assert lines[0].split("\t")[:2] == ["Residual, m", "|d|, m"]
     assert float(lines[1].split("\t")[1]) == pytest.approx(fitted().accuracy.max_abs, abs=1e-4)
-
-
-def test_numbers_are_set_as_in_print_and_exported_as_spreadsheets_read_them():
-    column = TableColumn("Volume, m³", np.array([-1234567.25, np.nan]), 1, grouped=True)
-    assert (column.cell(0), column.text(0)) == ("−1\N{THIN SPACE}234\N{THIN SPACE}567.2", "-1234567.2")
-    assert column.cell(1) == column.text(1) == ""
-    assert TableColumn("Hole", np.array(["ZK-1"])).cell(0) == "ZK-1", "a name is no number"
 
 
 def test_export_writes_every_row_that_is_shown(panel, tmp_path):
