@@ -301,11 +301,16 @@ class MainWindow(QMainWindow):
             (document.site_changed, self._on_site),
             (document.saved_changed, self._show_title),
             (document.name_changed, self._show_title),
-            (document.result_changed, lambda _: self._enable()),
-            (document.selection_changed, lambda _: self._enable()),
         ):
             signal.connect(listener)
             self._ends.append(lambda signal=signal, listener=listener: signal.disconnect(listener))  # type: ignore[misc]
+        document.result_changed.connect(self._on_surfaces)
+        document.selection_changed.connect(self._on_surfaces)
+        self._ends.append(lambda: document.result_changed.disconnect(self._on_surfaces))
+        self._ends.append(lambda: document.selection_changed.disconnect(self._on_surfaces))
+
+    def _on_surfaces(self, *_: object) -> None:
+        self._enable()
 
     def _on_site(self) -> None:
         self._show_recent()
