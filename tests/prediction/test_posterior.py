@@ -126,11 +126,12 @@ def brute_force(surface: HorizonFit, fit: LinearFit, group: np.ndarray) -> np.nd
     ("settings", "digits"),
     [
         ({"smoothing": 0.01}, 1e-8),
-        # The likelihood's smoothing leaves systems that lose more digits, on both sides.
-        ({}, 1e-4),
-        ({"core": "none"}, 2e-4),
-        ({"core": "all"}, 2e-4),
-        ({"interior_tolerance": 0.01}, 1e-4),
+        ({}, 1e-7),
+        # Noise of a millimetre, errors of metres: I - H of the group, which is their ratio squared, keeps four digits
+        # of a system that has lost six (the other side, solved in 80 bits, moves by 8e-6).
+        ({"core": "none"}, 5e-4),
+        ({"core": "all"}, 5e-4),
+        ({"interior_tolerance": 0.01}, 1e-7),
     ],
 )
 def test_leaving_out_is_the_same_as_solving_anew(settings, digits):
@@ -186,16 +187,20 @@ def test_points_that_were_let_go_pull_at_nothing_when_others_are_left_out():
     assert not {78, 79} & set(pull.points)
 
 
-def test_a_hole_left_out_is_close_to_a_new_fit_without_it():
-    """Knots, smoothing and pulls are chosen anew by the new fit: within 0.25 of the error's own sd."""
+def test_holes_left_out_are_close_to_new_fits_without_them():
+    """Of 20 holes: each new fit chooses its knots, pulls and field anew, and by few holes another direction."""
     surface, truth = small_surface(), small_truth()
-    fit = linear(surface)
-    predicted = fit.without([np.array([k]) for k in range(len(truth.points))])
-    for hole in ("B004", "B023", "B047"):
+    predicted = linear(surface).without([np.array([k]) for k in range(len(truth.points))])
+    holes = np.unique(truth.points.hole[truth.points.hole != ""])[:60:3]
+    moved = []
+    for hole in holes:
         left = truth.points.hole == hole
         refit = fit_horizon(truth.points[~left], boundary=truth.boundary)
         x, y, z = truth.points.xyz[left].T
-        assert abs(predicted.error[left] - (z - refit.elevation(x, y)))[0] < 0.25 * np.sqrt(predicted.variance[left][0])
+        apart = predicted.error[left] - (z - refit.elevation(x, y))
+        moved.append((apart / np.sqrt(predicted.variance[left])).item())
+    assert np.median(np.abs(moved)) < 0.05
+    assert np.sqrt(np.mean(np.square(moved))) < 0.15
 
 
 def test_standard_deviation_grows_away_from_the_points():
