@@ -153,7 +153,8 @@ def _away(prediction: PredictionResult | None, epsilon: float) -> Lamp:
         text = message("data.verdict-not-examined", "not examined away from the data")
         if prediction is not None:
             text = message("data.verdict-cannot-examine", "the error away from the data cannot be estimated")
-        return Lamp(title, "none", text)
+        # Points were left out, and the others could predict none of them.
+        return Lamp(title, "warning" if prediction is not None and prediction.left_out else "none", text)
     farthest = max(known, key=lambda one: one.rms)
     level, error = _error(farthest.rms, farthest.scheme, epsilon)
     worst = _least_inside(known)

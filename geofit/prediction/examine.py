@@ -155,6 +155,17 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None, where
         beyond = about_the_hull(given, fold) if not many else None
         notes += [beyond] if beyond else []
         notes += _not_held(results[-1])
+    if results and not any(np.isfinite(one.rms) for one in results):
+        # The noise was estimated from no misfit: the posterior would know the surface to a tenth of a millimetre.
+        notes.append(
+            message(
+                "prediction.no-error-known",
+                "none of the {count} points can be predicted from the others: nothing is known of the error between "
+                "them, and there is no standard deviation",
+                count=len(given.value),
+            )
+        )
+        return PredictionResult(tuple(results), None, (), outliers, tuple(notes))
     tell(progress, "next holes", 0.8)
     suggestions, uncertainty = _between(grid, PredictionError(model, given, calibration), notes)
     tell(progress, "done", 1.0)

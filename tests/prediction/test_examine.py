@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from geofit import PointSet, fit_horizon
+from geofit.data.verdict import verdict_of
 from geofit.prediction.examine import examine
 
 TRIANGLE = np.array([[0, 0, 10], [100, 0, 12], [50, 80, 11.0]])
@@ -19,6 +20,17 @@ def test_no_unforeseen_error(xyz):
     found = examine(fit_horizon(PointSet(xyz)))
     assert not [note for note in found.notes if "unforeseen" in str(note)]
     assert found.left_out
+
+
+def test_three_points_show_no_error_between_them():
+    """The plane through them meets them whatever they are: a band as narrow as rounding would hold nothing."""
+    surface = fit_horizon(PointSet(TRIANGLE, hole=["A", "B", "C"]))
+    found = examine(surface)
+    assert found.uncertainty is None
+    assert "prediction.no-error-known" in {note.code for note in found.notes}
+    verdict = verdict_of(surface.accuracy, found)
+    assert (verdict.data.level, verdict.away.level, verdict.word) == ("pass", "warning", "WARNING")
+    assert verdict.away.text.code == "data.verdict-cannot-examine"
 
 
 def test_one_vertical_hole_has_no_area_and_says_so():
