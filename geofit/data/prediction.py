@@ -9,9 +9,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import Message
+from geofit.data.messages import Message, message
 
-__all__ = ["LeftOut", "LeftOutBody", "Outlier", "PredictionResult", "Suggestion", "Uncertainty"]
+__all__ = ["LeftOut", "LeftOutBody", "Outlier", "PredictionResult", "SourceOffset", "Suggestion", "Uncertainty"]
 
 Floats = NDArray[np.float64]
 Scheme = Literal["hole", "section", "block"]
@@ -121,15 +121,51 @@ class Outlier:
     ratio: float
 
 
+@dataclass(frozen=True)
+class SourceOffset:
+    """Points of a kind that lie off those of another as a whole: by ``offset`` (positive: above), 1 sigma ``sd``, m.
+
+    ``kind`` is that of the ``count`` points, ``reference`` that of the points measured nearest to the rock.
+    """
+
+    kind: str
+    reference: str
+    count: int
+    offset: float
+    sd: float
+
+    @property
+    def text(self) -> Message:
+        """The offset in words."""
+        figures = {"kind": self.kind, "reference": self.reference, "count": self.count, "sd": self.sd}
+        if self.offset > 0:
+            return message(
+                "data.source-above",
+                "the {count} points of kind {kind} lie {offset:.2g} m (± {sd:.1g}) above those of kind {reference}",
+                offset=self.offset,
+                **figures,
+            )
+        return message(
+            "data.source-below",
+            "the {count} points of kind {kind} lie {offset:.2g} m (± {sd:.1g}) below those of kind {reference}",
+            offset=-self.offset,
+            **figures,
+        )
+
+
 @dataclass(frozen=True, eq=False)
 class PredictionResult:
-    """Everything said about a surface away from its data; ``notes`` state what could not be done, and why."""
+    """Everything said about a surface away from its data; ``notes`` state what could not be done, and why.
+
+    ``offsets`` are the kinds of points that lie above or below the others as a whole.
+    """
 
     left_out: tuple[LeftOut, ...]
     uncertainty: Uncertainty | None
     suggestions: tuple[Suggestion, ...]
     outliers: tuple[Outlier, ...]
     notes: tuple[Message, ...] = ()
+    offsets: tuple[SourceOffset, ...] = ()
 
     def __repr__(self) -> str:
         parts = [f"rms {one.rms:.3g} m by {one.scheme}" for one in self.left_out]

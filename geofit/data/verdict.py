@@ -159,7 +159,7 @@ def _away(prediction: PredictionResult | None, epsilon: float) -> Lamp:
     level, error = _error(farthest.rms, farthest.scheme, epsilon)
     worst = _least_inside(known)
     if worst is None:
-        return Lamp(title, level, error)
+        return _with_offsets(Lamp(title, level, error), prediction)
     if round(worst.inside, 2) < LEAST_INSIDE and level == "pass":
         level = "warning"
     text = message(
@@ -169,7 +169,15 @@ def _away(prediction: PredictionResult | None, epsilon: float) -> Lamp:
         share=100 * worst.inside,
         scheme=_SCHEMES[worst.scheme],
     )
-    return Lamp(title, level, text)
+    return _with_offsets(Lamp(title, level, text), prediction)
+
+
+def _with_offsets(lamp: Lamp, prediction: PredictionResult | None) -> Lamp:
+    """Return the lamp, amber at best where a source lies off the others, with the surest offset."""
+    if prediction is None or not prediction.offsets:
+        return lamp
+    text = message("data.verdict-source-off", "{lamp}; {offset}", lamp=lamp.text, offset=prediction.offsets[0].text)
+    return Lamp(lamp.title, "warning" if lamp.level == "pass" else lamp.level, text)
 
 
 def _error(rms: float, scheme: Scheme, epsilon: float) -> tuple[Level, Message]:

@@ -31,6 +31,7 @@ from geofit.fitting.posterior import Posterior, noise_of_unused, posterior
 from geofit.prediction.bands import Grid, PredictionError, grid_over, uncertainty_on
 from geofit.prediction.crossval import Fold, about_the_hull, calibrated, cross_validation_folds, left_out, one_by_one
 from geofit.prediction.drilling import suggest_holes
+from geofit.prediction.offsets import source_offsets
 from geofit.prediction.refits import in_half_the_gap, sections_by_refit
 from geofit.prediction.small_sets import SMALL, Refits
 from geofit.prediction.thinplate import thin_plate_inverse
@@ -74,8 +75,8 @@ def examine(
         Errors at holes, sections and blocks left out (no refit: :mod:`geofit.fitting.deletion`; of fewer than
         30 points by true refits: :mod:`geofit.prediction.small_sets`) beside the
         thin-plate spline and kriging on the same folds; standard deviation on a grid, held to those errors; the next
-        holes; outliers. Of a folded surface its inner sections are left out, by true refits; no other method has such
-        a surface, and outliers are not looked for.
+        holes; outliers; kinds of points that lie off the others as a whole. Of a folded surface its inner sections are
+        left out, by true refits; no other method has such a surface, and neither outliers nor offsets are looked for.
 
     Raises
     ------
@@ -168,8 +169,23 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None, where
         return PredictionResult(tuple(results), None, (), outliers, tuple(notes))
     tell(progress, "next holes", 0.8)
     suggestions, uncertainty = _between(grid, PredictionError(model, given, calibration), notes)
+    offsets = guarded(
+        lambda: source_offsets(model, given, calibration),
+        (),
+        lambda reason: notes.append(
+            message("prediction.sources-not-compared", "the sources were not compared: {reason}", reason=reason)
+        ),
+    )
+    notes += [
+        message(
+            "prediction.source-off",
+            "{offset}: a datum, a velocity or a depth may be wrong; the surface runs from the ones to the others",
+            offset=one.text,
+        ).with_severity("warning")
+        for one in offsets
+    ]
     tell(progress, "done", 1.0)
-    return PredictionResult(tuple(results), uncertainty, suggestions, outliers, tuple(notes))
+    return PredictionResult(tuple(results), uncertainty, suggestions, outliers, tuple(notes), offsets)
 
 
 def _examine_folded(surface: HorizonFit, model: Model, progress: Progress | None, where: Where) -> PredictionResult:

@@ -1,0 +1,49 @@
+"""Kinds of points that lie off the others as a whole."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from refusals import with_code
+from truth import EASTING, NORTHING, hills
+
+from geofit import PointSet, fit_horizon
+from geofit.data.verdict import verdict_of
+from geofit.prediction.examine import examine
+
+HOLES, PICKS = 40, 200
+
+
+def examined(offset, kind="geophysics"):
+    """A horizon seen by 40 boreholes (0.05 m) and by 200 picks (1.5 m) that lie ``offset`` above it."""
+    rng, height = np.random.default_rng(2), hills(1)
+    plan = rng.uniform(0, 2000, (HOLES + PICKS, 2)) + np.array((EASTING, NORTHING))
+    z = height(*plan.T) + rng.normal(0, 1, len(plan)) * np.repeat([0.05, 1.5], [HOLES, PICKS])
+    z[HOLES:] += offset
+    kinds = ["borehole"] * HOLES + [kind] * PICKS
+    surface = fit_horizon(PointSet(np.column_stack([plan, z]), kind=kinds))
+    return surface, examine(surface)
+
+
+@pytest.mark.parametrize("offset", [6.0, -2.5])
+def test_picks_that_lie_off_as_a_whole_are_named(offset):
+    surface, found = examined(offset)
+    (one,) = found.offsets
+    assert (one.kind, one.reference, one.count) == ("geophysics", "borehole", PICKS)
+    assert one.offset == pytest.approx(offset, abs=3 * one.sd)
+    assert one.sd < 1.0
+    assert one.text.code == ("data.source-above" if offset > 0 else "data.source-below")
+    assert with_code(found.notes, "prediction.source-off").severity == "warning"
+    verdict = verdict_of(surface.accuracy, found)
+    assert verdict.away.level in ("warning", "fail")
+    assert verdict.away.text.params["offset"] == one.text
+
+
+def test_picks_that_only_scatter_more_are_not():
+    _, found = examined(0.0)
+    assert found.offsets == ()
+
+
+def test_points_of_one_kind_have_nothing_to_be_compared_with():
+    _, found = examined(6.0, kind="borehole")
+    assert found.offsets == ()
