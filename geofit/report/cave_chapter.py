@@ -163,9 +163,9 @@ def _volume(found: CaveFindings, t: Language) -> list[Block]:
     rows = (
         (t("volume"), digits.volume(v.volume)),
         (t("standard deviation"), digits.volume(v.sigma)),
-        (t("of that by the measured walls"), digits.volume(v.walls)),
-        (t("of that by the missing walls"), digits.volume(v.missing)),
-        (t("of that by the lengths of the shots"), digits.volume(v.survey)),
+        (t("part of it from measured walls"), digits.volume(v.walls)),
+        (t("part of it from missing walls"), digits.volume(v.missing)),
+        (t("part of it from shot lengths"), digits.volume(v.survey)),
         ("P10", digits.volume(v.p10)),
         ("P90", digits.volume(v.p90)),
     )

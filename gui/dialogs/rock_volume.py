@@ -166,7 +166,8 @@ class RockVolumeDialog(SceneDialog):
         if self.volume is not None:
             low, high = self.low.value(), self.high.value()
             self.slices.show_range(low, high)
-            self.porosity.setText(f"{100 * self.volume.share(low, high):.2f} %")
+            stated = UNSTATED < low <= high
+            self.porosity.setText(f"{100 * self.volume.share(low, high):.2f} %" if stated else "–")
         self.refresh()
 
     def _find(self) -> None:

@@ -28,16 +28,16 @@ def figure_rows(adjusted: AdjustedSurvey, run: CaveRun | None) -> list[tuple[str
         (t("stations, shots"), f"{len(survey.stations)}, {len(survey.start)}"),
         (in_title(t("surveyed length, m")), f"{shown_length(survey.length):.1f}"),
         (in_title(t("lowest to highest station, m")), f"{shown_length(float(high - low)):.1f}"),
-        (t("loops, those to be checked"), f"{len(adjusted.loops)}, {sum(loop.suspicious for loop in adjusted.loops)}"),
+        (t("loops, to be checked"), f"{len(adjusted.loops)}, {sum(loop.suspicious for loop in adjusted.loops)}"),
     ]
     if run is None:
         return rows
     v = run.volume
     square = max(v.sigma**2, 1e-300)
     causes = (
-        (t("of that by the measured walls"), v.walls),
-        (t("of that by the missing walls"), v.missing),
-        (t("of that by the lengths of the shots"), v.survey),
+        (t("part of it from measured walls"), v.walls),
+        (t("part of it from missing walls"), v.missing),
+        (t("part of it from shot lengths"), v.survey),
     )
     return [
         *rows,

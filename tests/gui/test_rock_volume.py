@@ -61,6 +61,7 @@ def test_labels_are_never_guessed_and_the_voxel_is_asked_for(qtbot, dialog, tmp_
     assert dialog.porosity.text() == f"{100 * (chambers() == 0).mean():.2f} %"
     dialog.high.setValue(-1)
     assert not dialog.go.isEnabled()
+    assert dialog.porosity.text() == "–", "of no range"
 
 
 def test_slices_go_through_all_axes_and_the_histogram_counts_all_voxels(qtbot, dialog, tmp_path):

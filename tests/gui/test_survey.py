@@ -104,14 +104,17 @@ def test_tables_and_scene_show_what_the_library_finds(qtbot, dialog, loops, here
     truth = measure_passages(read_survey(loops))
     figures = dict(rows(dialog.tables["figures"]))
     assert figures["stations, shots"] == "6, 7"
-    assert figures["loops, those to be checked"].startswith(f"{len(truth.adjusted.loops)}, ")
-    causes = [figures[f"of that by the {name}"] for name in ("measured walls", "missing walls", "lengths of the shots")]
+    assert figures["loops, to be checked"].startswith(f"{len(truth.adjusted.loops)}, ")
+    causes = [figures[f"part of it from {name}"] for name in ("measured walls", "missing walls", "shot lengths")]
     shares = [float(cause.split("(")[1].rstrip(" %)")) for cause in causes]
     assert sum(shares) == pytest.approx(100, abs=1.5)
     assert shares[0] == pytest.approx(100 * (truth.volume.walls / truth.volume.sigma) ** 2, abs=0.5)
     table = rows(dialog.tables["loops"])
     assert [float(row[2]) for row in table] == [round(loop.distance, 2) for loop in truth.adjusted.loops]
     assert table[0][-1] == "to be checked"
+    shown = {name for name, table in dialog.tables.items() if dialog.tabs.isTabVisible(dialog.tabs.indexOf(table))}
+    assert shown == {name for name, table in dialog.tables.items() if rows(table)}
+    assert {"figures", "loops"} <= shown <= {"figures", "loops", "walls", "rows"}, "no horizons, no strata"
     assert "expected misclosure" in dialog.message.text()
     missing = rows(dialog.tables["walls"])
     assert {row[0] for row in missing} == {wall.station for wall in truth.body.sections.filled}

@@ -82,7 +82,7 @@ def test_figures_of_volume_strata_and_missing_walls_are_those_of_the_run(blunder
     volume = {row[0]: float(row[1].split("\N{NO-BREAK SPACE}")[0]) for row in table(chapter, "Volume").rows}
     assert volume["volume"] == pytest.approx(blunder.volume.volume, rel=1e-3)
     assert volume["standard deviation"] == pytest.approx(blunder.volume.sigma, rel=1e-3)
-    parts = [volume[f"of that by the {name}"] for name in ("measured walls", "missing walls", "lengths of the shots")]
+    parts = [volume[f"part of it from {name}"] for name in ("measured walls", "missing walls", "shot lengths")]
     assert np.sqrt(np.square(parts).sum()) == pytest.approx(blunder.volume.sigma, rel=1e-3)
     strata = table(chapter, "Strata").rows
     assert [row[0] for row in strata[:3]] == ["above T2", "T2 to T1", "below T1"]
