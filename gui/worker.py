@@ -18,7 +18,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
-from PySide6.QtCore import QCoreApplication, QObject, QRunnable, Qt, QThreadPool, Signal
+from PySide6.QtCore import QCoreApplication, QObject, Qt, QThreadPool, Signal
 from shiboken6 import isValid
 
 from geofit.data.errors import Cancelled, GeofitError
@@ -97,13 +97,17 @@ class Task(QObject):
         self.setParent(None)
 
 
-class _Job(QRunnable):
+class _Job:
+    """A function and what it is given.
+
+    It is no QRunnable: PySide keeps those as long as their pool, with all that they were given.
+    """
+
     def __init__(self, line: _Line, title: str, function: Callable[..., Any], args: tuple[Any, ...]) -> None:
-        super().__init__()
         self._line, self._title, self._function, self._args = line, title, function, args
 
     def run(self) -> None:
-        """Run the function; whatever happens is raised in the window's thread."""
+        """Call the function, in a thread of the pool; whatever happens is raised in the window's thread."""
         try:
             if self._line.stop.is_set():
                 raise Cancelled(message("gui.stopped-before-start", "Stopped before it began."))
@@ -123,7 +127,10 @@ class _Job(QRunnable):
             outcome = ("failed", error)
         else:
             outcome = ("done", result)
-        _bridge().ended.emit(self._line.number, *outcome)
+        number = self._line.number
+        # The task keeps the line: connections to it end where it dies, which must be in the window's thread.
+        del self._line, self._function, self._args
+        _bridge().ended.emit(number, *outcome)
 
 
 class _Bridge(QObject):
@@ -178,7 +185,7 @@ def run(
         if callback is not None:
             signal.connect(callback)
     _RUNNING[line.number] = task
-    _pool().start(_Job(line, title, function, args))
+    _pool().start(_Job(line, title, function, args).run)
     return task
 
 

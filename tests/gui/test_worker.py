@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import threading
 import time
+import weakref
 from contextlib import suppress
 
 import pytest
@@ -55,6 +57,39 @@ def owner(qtbot):
     owner = QObject()
     yield owner
     owner.deleteLater()
+
+
+def taking(given, *, progress):
+    return None
+
+
+def refusing(given, *, progress):
+    failing(progress=progress)
+
+
+class Given:
+    """What tasks are given: it can be referred to weakly."""
+
+
+@pytest.mark.parametrize("function", [taking, refusing])
+def test_what_tasks_were_given_goes_with_them_and_their_lines_die_in_the_windows_thread(owner, qtbot, function):
+    given, threads = [], []
+
+    def died(_):
+        threads.append(threading.current_thread())
+
+    lines = []
+    for _ in range(100):
+        one = Given()
+        given.append(weakref.ref(one))
+        task = worker.run(owner, function, one)
+        lines.append(weakref.ref(task._line.stop, died))
+        del one, task
+        qtbot.waitUntil(lambda: not worker.tasks())
+    worker.finish_all()
+    gc.collect()
+    assert not [one for one in (*given, *lines) if one() is not None]
+    assert set(threads) == {threading.main_thread()}
 
 
 def test_the_result_comes_in_the_windows_thread(owner, qtbot):
