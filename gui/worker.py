@@ -100,7 +100,7 @@ class Task(QObject):
 class _Job:
     """A function and what it is given.
 
-    It is no QRunnable: PySide keeps those as long as their pool, with all that they were given.
+    Not a QRunnable: PySide keeps those as long as their pool, with all that they were given.
     """
 
     def __init__(self, line: _Line, title: str, function: Callable[..., Any], args: tuple[Any, ...]) -> None:
