@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_limits
 from geofit.data.given import FIT, require_kind
 from geofit.data.guard import guarded
 from geofit.data.messages import Message, message
-from geofit.data.prediction import LeftOut, Outlier, PredictionResult, Suggestion, Uncertainty
+from geofit.data.prediction import LeftOut, Outlier, PredictionResult, SourceOffset, Suggestion, Uncertainty
 from geofit.data.progress import Progress, tell
 from geofit.data.verdict import LEAST_INSIDE
 from geofit.fitting.calibration import (
@@ -169,9 +169,19 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None, where
         return PredictionResult(tuple(results), None, (), outliers, tuple(notes))
     tell(progress, "next holes", 0.8)
     suggestions, uncertainty = _between(grid, PredictionError(model, given, calibration), notes)
-    offsets = guarded(
+    offsets = _offsets(model, given, calibration, notes)
+    tell(progress, "done", 1.0)
+    return PredictionResult(tuple(results), uncertainty, suggestions, outliers, tuple(notes), offsets)
+
+
+def _offsets(
+    model: Model, given: Posterior, calibration: Calibration, notes: list[Message]
+) -> tuple[SourceOffset, ...]:
+    """Return the kinds of points that lie off the others, with a note of each."""
+    none: tuple[SourceOffset, ...] = ()
+    found = guarded(
         lambda: source_offsets(model, given, calibration),
-        (),
+        none,
         lambda reason: notes.append(
             message("prediction.sources-not-compared", "the sources were not compared: {reason}", reason=reason)
         ),
@@ -182,10 +192,9 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None, where
             "{offset}: a datum, a velocity or a depth may be wrong; the surface runs from the ones to the others",
             offset=one.text,
         ).with_severity("warning")
-        for one in offsets
+        for one in found
     ]
-    tell(progress, "done", 1.0)
-    return PredictionResult(tuple(results), uncertainty, suggestions, outliers, tuple(notes), offsets)
+    return found
 
 
 def _examine_folded(surface: HorizonFit, model: Model, progress: Progress | None, where: Where) -> PredictionResult:
