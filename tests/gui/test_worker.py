@@ -59,36 +59,39 @@ def owner(qtbot):
     owner.deleteLater()
 
 
-def taking(given, *, progress):
-    return None
+class Given:
+    """What a task is given: ``died`` is called when the one who listens to the task's progress is gone."""
+
+    def __init__(self, died):
+        self.died = died
 
 
-def refusing(given, *, progress):
+def taking(given, listeners, *, progress):
+    listeners.append(weakref.ref(progress.__self__, given.died))
+
+
+def refusing(given, listeners, *, progress):
+    taking(given, listeners, progress=progress)
     failing(progress=progress)
 
 
-class Given:
-    """What tasks are given: it can be referred to weakly."""
-
-
 @pytest.mark.parametrize("function", [taking, refusing])
-def test_what_tasks_were_given_goes_with_them_and_their_lines_die_in_the_windows_thread(owner, qtbot, function):
-    given, threads = [], []
+def test_what_tasks_were_given_goes_with_them_and_who_listens_dies_in_the_windows_thread(owner, qtbot, function):
+    given, listeners, threads = [], [], []
 
     def died(_):
         threads.append(threading.current_thread())
 
-    lines = []
     for _ in range(100):
-        one = Given()
+        one = Given(died)
         given.append(weakref.ref(one))
-        task = worker.run(owner, function, one)
-        lines.append(weakref.ref(task._line.stop, died))
-        del one, task
+        worker.run(owner, function, one, listeners)
+        del one
         qtbot.waitUntil(lambda: not worker.tasks())
     worker.finish_all()
     gc.collect()
-    assert not [one for one in (*given, *lines) if one() is not None]
+    assert not [one for one in (*given, *listeners) if one() is not None]
+    assert len(threads) == 100
     assert set(threads) == {threading.main_thread()}
 
 
