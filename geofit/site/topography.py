@@ -97,15 +97,15 @@ def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -
 def _buried(plan: Floats, own: Floats, depth: Floats) -> Floats:
     """How deep (m) under the ground all three points around each place lie, if none of them is far off; else 0."""
     points, first = np.unique(own, axis=0, return_index=True)
-    if len(points) < 3 or np.linalg.matrix_rank(points - points[0], tol=1e-6) < 2:
-        return np.zeros(len(plan))
-    # Qhull hands LAPACK one 2 x 2 matrix a triangle: starting threads for each costs a hundred times the work.
+    # Matrices of two columns, one a triangle in Qhull: starting threads for each costs a hundred times the work.
     with threadpool_limits(limits=1):
+        if len(points) < 3 or np.linalg.matrix_rank(points - points[0], tol=1e-6) < 2:
+            return np.zeros(len(plan))
         mesh = Delaunay(points - points[0])
+        triangle = mesh.find_simplex(plan - points[0])
     corners = mesh.points[mesh.simplices]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     least = np.where(longest <= REACH * np.median(longest), depth[first][mesh.simplices].min(axis=1), 0.0)
-    triangle = mesh.find_simplex(plan - points[0])
     return np.where(triangle >= 0, least[triangle], 0.0)
 
 
