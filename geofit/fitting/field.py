@@ -255,15 +255,13 @@ def choose_covariance(
 
     few = len(plane) < ENOUGH
     if known:
-        found, rival = [], math.inf
-        for guess in known:
-            smoother, judge = guess.alpha > space.degree, likelihood(guess.alpha)
-            start = judge.parameters(guess.kappa, guess.rho, guess.stretch)
-            if smoothing is None:
-                found.append(maximize_over_noise(judge, start, math.inf if smoother else rival))
-            else:
-                found.append(judge.optimum(start))
-            rival = rival if smoother else min(rival, found[-1].value)
+        # None is judged by its start: how far each is from its own noise says nothing of how far it comes.
+        judges = [likelihood(guess.alpha) for guess in known]
+        starts = [
+            judge.parameters(guess.kappa, guess.rho, guess.stretch) for judge, guess in zip(judges, known, strict=True)
+        ]
+        best_of = maximize_over_noise if smoothing is None else Likelihood.optimum
+        found = [best_of(judge, start) for judge, start in zip(judges, starts, strict=True)]
     else:
         found = _search(likelihood, space.degree, len(plane), smoothing)
     found = sorted(found, key=lambda one: one.value)

@@ -68,13 +68,13 @@ def maximize(likelihood: Likelihood, starts: Sequence[Floats], free: Sequence[in
     return likelihood.optimum(at)
 
 
-def maximize_over_noise(likelihood: Likelihood, start: Floats, rival: float = math.inf) -> Optimum:
+def maximize_over_noise(likelihood: Likelihood, start: Floats) -> Optimum:
     """Find the noise of the greatest likelihood, all other parameters being those of the start.
 
     On spaces of other spans the range is known by then: what changes is what counts as noise.
     """
     low, high = likelihood.bounds()[1]
-    if likelihood(start) >= min(UNSOLVABLE, rival + BEHIND):
+    if likelihood(start) >= UNSOLVABLE:
         return likelihood.optimum(start)
 
     def at(log_rho: float) -> Floats:

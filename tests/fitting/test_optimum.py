@@ -58,5 +58,3 @@ def test_a_search_far_behind_its_rival_is_given_up():
     start = [likelihood.parameters(1.0, 100.0, (0.0, 0.0))]
     given_up = maximize(likelihood, start, EVERY, rival=best.value - 10 * BEHIND)
     assert given_up.value > best.value
-    alone = maximize_over_noise(likelihood, start[0], rival=likelihood(start[0]) - 2 * BEHIND)
-    assert alone.value == likelihood(start[0])
