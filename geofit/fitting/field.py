@@ -255,7 +255,7 @@ def choose_covariance(
 
     few = len(plane) < ENOUGH
     if known:
-        # None is judged by its start: how far each is from its own noise says nothing of how far it comes.
+        # Each is searched: the likelihood at its start does not predict its maximum.
         judges = [likelihood(guess.alpha) for guess in known]
         starts = [
             judge.parameters(guess.kappa, guess.rho, guess.stretch) for judge, guess in zip(judges, known, strict=True)

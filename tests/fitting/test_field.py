@@ -17,7 +17,7 @@ from geofit.fitting.field import (
     smooth,
     widened_space,
 )
-from geofit.fitting.resolution import EVEN, longest_span
+from geofit.fitting.resolution import EVEN, even_space, longest_span
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
@@ -346,3 +346,18 @@ def test_points_all_at_one_place_are_called_contradictory():
     field = chosen(space_over(60), np.full((20, 2), 3.0), np.arange(20.0))
     assert field.contradictory
     assert np.isfinite(field.noise)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_each_smoothness_finds_its_own_noise_whatever_the_others_find(seed):
+    """Relief that a coarse space counts as noise is resolved by a finer one, so each noise is far from its start."""
+    plane, z, trend = cloud(1000, seed, 0.05, hills(seed, shortest=120.0))
+    side = np.sqrt(1000)
+    coarse, fine = (even_space((0, side, 0, side), EVEN, 3, size) for size in (484, 1444))
+    known = [field for field, _ in choose_covariance(coarse, plane, z, np.ones(1000), trend=trend)]
+    assert {field.alpha for field in known} >= {2, 3}
+    found = choose_covariance(fine, plane, z, np.ones(1000), known=known, trend=trend)
+    together = {field.alpha: value for field, value in found}
+    for guess in known:
+        ((alone, value),) = choose_covariance(fine, plane, z, np.ones(1000), known=[guess], trend=trend)
+        assert together[alone.alpha] == pytest.approx(value, abs=1e-6)
