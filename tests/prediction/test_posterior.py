@@ -127,10 +127,10 @@ def brute_force(surface: HorizonFit, fit: LinearFit, group: np.ndarray) -> np.nd
     [
         ({"smoothing": 0.01}, 1e-8),
         ({}, 1e-7),
-        # Noise of a millimetre, errors of metres: I - H of the group, which is their ratio squared, keeps four digits
-        # of a system that has lost six (the other side, solved in 80 bits, moves by 8e-6).
-        ({"core": "none"}, 5e-4),
-        ({"core": "all"}, 5e-4),
+        # The noise is a millimetre, the errors are metres: I - H of the group, their squared ratio, cancels six digits
+        # of a system of condition 3e7. The brute force is the better side: solved in 80 bits it changes by 8e-6.
+        ({"core": "none"}, 2e-4),
+        ({"core": "all"}, 2e-4),
         ({"interior_tolerance": 0.01}, 1e-7),
     ],
 )
@@ -188,19 +188,22 @@ def test_points_that_were_let_go_pull_at_nothing_when_others_are_left_out():
 
 
 def test_holes_left_out_are_close_to_new_fits_without_them():
-    """Of 20 holes: each new fit chooses its knots, pulls and field anew, and by few holes another direction."""
+    """Of 20 holes: each new fit chooses its own knots, pulls and field; a few holes decide on its direction."""
     surface, truth = small_surface(), small_truth()
     predicted = linear(surface).without([np.array([k]) for k in range(len(truth.points))])
     holes = np.unique(truth.points.hole[truth.points.hole != ""])[:60:3]
-    moved = []
+    moved = {}
     for hole in holes:
         left = truth.points.hole == hole
         refit = fit_horizon(truth.points[~left], boundary=truth.boundary)
         x, y, z = truth.points.xyz[left].T
         apart = predicted.error[left] - (z - refit.elevation(x, y))
-        moved.append((apart / np.sqrt(predicted.variance[left])).item())
-    assert np.median(np.abs(moved)) < 0.05
-    assert np.sqrt(np.mean(np.square(moved))) < 0.15
+        moved[hole] = abs(apart / np.sqrt(predicted.variance[left])).item()
+    size = np.array(list(moved.values()))
+    assert moved["B004"] < 0.25
+    assert size.max() < 0.4
+    assert np.median(size) < 0.05
+    assert np.sqrt(np.mean(size**2)) < 0.15
 
 
 def test_standard_deviation_grows_away_from_the_points():
