@@ -11,7 +11,7 @@ from geofit.data.labels import Labels
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 
-__all__ = ["near_pairs", "resolve_conflicts", "trust_of"]
+__all__ = ["near_pairs", "resolve_conflicts", "trust_of", "trust_of_kinds"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -165,4 +165,9 @@ def _describe(points: PointSet, winner: int, loser: int, difference: float) -> C
 
 def trust_of(kinds: Labels) -> NDArray[np.int64]:
     """Return (n,) how far from the rock each point was measured by its kind: 0 for a borehole."""
-    return np.array([_TRUST.get(kind, 3) for kind in kinds.table])[kinds.codes]
+    return trust_of_kinds(kinds)[kinds.codes]
+
+
+def trust_of_kinds(kinds: Labels) -> NDArray[np.int64]:
+    """Return the same of each kind in the table of labels."""
+    return np.array([_TRUST.get(kind, _TRUST["point"]) for kind in kinds.table], dtype=np.int64)

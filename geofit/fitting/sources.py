@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from geofit.data.labels import Labels
 from geofit.data.messages import Message, message
 from geofit.fitting.active_points import Data, degree_for, gather_points
-from geofit.fitting.conflicts import trust_of
+from geofit.fitting.conflicts import trust_of, trust_of_kinds
 from geofit.fitting.field import ENOUGH, FieldChoice, choose_covariance
 from geofit.fitting.model import Problem
 from geofit.fitting.resolution import EVEN, FIRST_LEVEL, GAIN, SKETCH, SKETCHED, even_space, sketched_fields
@@ -88,7 +88,7 @@ def _to_judge(kinds: Labels, accuracy: Floats) -> dict[str, NDArray[np.bool_]]:
     """Return the points of each kind to judge, the kinds farthest from the rock first."""
     trust, unstated = trust_of(kinds), np.isnan(accuracy)
     judged = {}
-    for code in np.argsort([-trust_of(Labels.same(kind, 1))[0] for kind in kinds.table], kind="stable"):
+    for code in np.argsort(-trust_of_kinds(kinds), kind="stable"):
         own = (kinds.codes == code) & unstated
         if own.sum() >= ENOUGH and (trust < trust[own][0]).sum() >= ENOUGH:
             judged[kinds.table[code]] = own
