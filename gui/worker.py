@@ -98,9 +98,9 @@ class Task(QObject):
 
 
 class _Job:
-    """A function and what it is given.
+    """A function and its arguments.
 
-    Not a QRunnable: PySide keeps those as long as their pool, with all that they were given.
+    Not a QRunnable: PySide keeps those as long as their pool, with their arguments.
     """
 
     def __init__(self, line: _Line, title: str, function: Callable[..., Any], args: tuple[Any, ...]) -> None:
@@ -128,7 +128,7 @@ class _Job:
         else:
             outcome = ("done", result)
         number = self._line.number
-        # The task keeps the line: connections to it end where it dies, which must be in the window's thread.
+        # The last reference to the line is the task's: Qt must disconnect it in the window's thread.
         del self._line, self._function, self._args
         _bridge().ended.emit(number, *outcome)
 

@@ -123,9 +123,10 @@ class Outlier:
 
 @dataclass(frozen=True)
 class SourceOffset:
-    """Points of a kind that lie off those of another as a whole: by ``offset`` (positive: above), 1 sigma ``sd``, m.
+    """A systematic offset between the points of two kinds, metres, with its standard deviation ``sd`` (1 sigma).
 
-    ``kind`` is that of the ``count`` points, ``reference`` that of the points measured nearest to the rock.
+    ``kind`` is that of the ``count`` points, ``reference`` that of the points measured nearest to the rock. ``offset``
+    is positive above them; where not ``vertical``, it is measured across the best plane of a steep surface.
     """
 
     kind: str
@@ -133,21 +134,31 @@ class SourceOffset:
     count: int
     offset: float
     sd: float
+    vertical: bool = True
 
     @property
     def text(self) -> Message:
         """The offset in words."""
         figures = {"kind": self.kind, "reference": self.reference, "count": self.count, "sd": self.sd}
+        if not self.vertical:
+            return message(
+                "data.source-aside",
+                "the {count} points of kind '{kind}' lie {offset:.2g} m (± {sd:.1g} m) to one side of those of kind "
+                "'{reference}'",
+                offset=abs(self.offset),
+                **figures,
+            )
         if self.offset > 0:
             return message(
                 "data.source-above",
-                "the {count} points of kind {kind} lie {offset:.2g} m (± {sd:.1g}) above those of kind {reference}",
+                "the {count} points of kind '{kind}' lie {offset:.2g} m (± {sd:.1g} m) above those of kind "
+                "'{reference}'",
                 offset=self.offset,
                 **figures,
             )
         return message(
             "data.source-below",
-            "the {count} points of kind {kind} lie {offset:.2g} m (± {sd:.1g}) below those of kind {reference}",
+            "the {count} points of kind '{kind}' lie {offset:.2g} m (± {sd:.1g} m) below those of kind '{reference}'",
             offset=-self.offset,
             **figures,
         )
@@ -157,7 +168,7 @@ class SourceOffset:
 class PredictionResult:
     """Everything said about a surface away from its data; ``notes`` state what could not be done, and why.
 
-    ``offsets`` are the kinds of points that lie above or below the others as a whole.
+    ``offsets`` are the systematic offsets between kinds of points, the most significant first.
     """
 
     left_out: tuple[LeftOut, ...]

@@ -153,7 +153,7 @@ def _away(prediction: PredictionResult | None, epsilon: float) -> Lamp:
         text = message("data.verdict-not-examined", "not examined away from the data")
         if prediction is not None:
             text = message("data.verdict-cannot-examine", "the error away from the data cannot be estimated")
-        # Points were left out, and the others could predict none of them.
+        # Points were left out, but none could be predicted from the others.
         return Lamp(title, "warning" if prediction is not None and prediction.left_out else "none", text)
     farthest = max(known, key=lambda one: one.rms)
     level, error = _error(farthest.rms, farthest.scheme, epsilon)
@@ -173,7 +173,7 @@ def _away(prediction: PredictionResult | None, epsilon: float) -> Lamp:
 
 
 def _with_offsets(lamp: Lamp, prediction: PredictionResult | None) -> Lamp:
-    """Return the lamp, amber at best where a source lies off the others, with the surest offset."""
+    """Return the lamp with the most significant offset between sources, which turns green to amber."""
     if prediction is None or not prediction.offsets:
         return lamp
     text = message("data.verdict-source-off", "{lamp}; {offset}", lamp=lamp.text, offset=prediction.offsets[0].text)

@@ -75,8 +75,8 @@ def examine(
         Errors at holes, sections and blocks left out (no refit: :mod:`geofit.fitting.deletion`; of fewer than
         30 points by true refits: :mod:`geofit.prediction.small_sets`) beside the
         thin-plate spline and kriging on the same folds; standard deviation on a grid, held to those errors; the next
-        holes; outliers; kinds of points that lie off the others as a whole. Of a folded surface its inner sections are
-        left out, by true refits; no other method has such a surface, and neither outliers nor offsets are looked for.
+        holes; outliers; systematic offsets between kinds of points. Of a folded surface its inner sections are left
+        out, by true refits; no other method has such a surface, and neither outliers nor offsets are looked for.
 
     Raises
     ------
@@ -157,12 +157,12 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None, where
         notes += [beyond] if beyond else []
         notes += _not_held(results[-1])
     if results and not any(np.isfinite(one.rms) for one in results):
-        # The noise was estimated from no misfit: the posterior would know the surface to a tenth of a millimetre.
+        # With no misfit, the noise estimate is rounding error, and so would be the posterior standard deviation.
         notes.append(
             message(
                 "prediction.no-error-known",
-                "none of the {count} points can be predicted from the others: nothing is known of the error between "
-                "them, and there is no standard deviation",
+                "none of the {count} points can be predicted from the others, so the prediction error is unknown and "
+                "no standard deviation is reported",
                 count=len(given.value),
             )
         )
@@ -177,7 +177,7 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None, where
 def _offsets(
     model: Model, given: Posterior, calibration: Calibration, notes: list[Message]
 ) -> tuple[SourceOffset, ...]:
-    """Return the kinds of points that lie off the others, with a note of each."""
+    """Return the systematic offsets between kinds of points, and add a note on each."""
     none: tuple[SourceOffset, ...] = ()
     found = guarded(
         lambda: source_offsets(model, given, calibration),
@@ -189,7 +189,7 @@ def _offsets(
     notes += [
         message(
             "prediction.source-off",
-            "{offset}: a datum, a velocity or a depth may be wrong; the surface runs from the ones to the others",
+            "{offset}; check their datum, velocity or depths: the surface passes between the two kinds",
             offset=one.text,
         ).with_severity("warning")
         for one in found

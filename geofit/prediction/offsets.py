@@ -1,45 +1,43 @@
-"""Sources that lie above or below the others as a whole: a datum, a velocity, a depth counted from another mouth.
+"""Systematic offsets between sources, caused by a wrong datum, velocity or depth reference.
 
-Points of two kinds scatter about one horizon. Where those of one kind lie off by a constant, the surface runs from the
-ones to the others, and its errors look like noise. The constant is found as one more unknown for each kind, beside the
-field and the plane: with Q = W (I - C W), C the field's posterior covariance at the points, it is (X' Q X)^-1 X' Q z
-for the indicators X of the kinds, of the covariance noise^2 (X' Q X)^-1 (generalized least squares; N. Cressie,
-Statistics for Spatial Data, 1993, sec. 3.4.5).
+The points of all kinds sample one horizon. If those of one kind are offset by a constant, the surface passes between
+the kinds, and the offset is mistaken for noise. The offset of each kind is estimated as an additional unknown, together
+with the field and the plane. With Q = W (I - C W), C the field's posterior covariance at the points and X the
+indicators of the kinds, the offsets are (X' Q X)^-1 X' Q z, with covariance noise^2 (X' Q X)^-1 (generalized least
+squares; N. Cressie, Statistics for Spatial Data, 1993, sec. 3.4.5).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from geofit.data.labels import Labels
 from geofit.data.prediction import SourceOffset
 from geofit.fitting.calibration import Calibration
-from geofit.fitting.conflicts import trust_of
+from geofit.fitting.conflicts import trust_of_kinds
 from geofit.fitting.model import Model
 from geofit.fitting.posterior import Posterior
 
 __all__ = ["source_offsets"]
 
-#: Fewest points of a kind that is compared, and how many standard deviations make an offset.
+#: Minimum number of points of a kind, and the number of standard deviations from which an offset is significant.
 FEWEST, SURE = 10, 4.0
 
 
 def source_offsets(model: Model, given: Posterior, calibration: Calibration) -> tuple[SourceOffset, ...]:
-    """Return the kinds of points that lie off those measured nearest to the rock, the surest first.
+    """Return the significant offsets from the kind measured nearest to the rock, the most significant first.
 
     Parameters
     ----------
     model : Model
-        A fitted height field; offsets within its interior tolerance do not count.
+        A fitted height field; offsets within its interior tolerance are ignored.
     given : Posterior
         Its field.
     calibration : Calibration
-        By how much left-out errors widen the field's standard deviation: the offsets' is widened alike.
+        The factor by which left-out errors widen the field's standard deviation; it widens the offsets' as well.
     """
     kinds = model.problem.points.labels["kind"][given.kept]
     counts = np.bincount(kinds.codes, minlength=len(kinds.table))
-    trust = trust_of(Labels(np.arange(len(kinds.table), dtype=np.int32), kinds.table))
-    compared = [code for code in np.argsort(trust, kind="stable") if counts[code] >= FEWEST]
+    compared = [code for code in np.argsort(trust_of_kinds(kinds), kind="stable") if counts[code] >= FEWEST]
     if len(compared) < 2:
         return ()
     of_kind = (kinds.codes[:, None] == np.array(compared[1:])).astype(float)
@@ -51,8 +49,10 @@ def source_offsets(model: Model, given: Posterior, calibration: Calibration) -> 
     inverse = np.linalg.pinv((normal + normal.T) / 2, hermitian=True)
     offset = inverse @ (weighed.T @ given.residual)
     sd = given.noise * max(calibration.common, 1.0) * np.sqrt(np.maximum(np.diag(inverse), 0.0))
+    vertical = model.problem.parametrization.frame.kind == "map"
+    reference = kinds.table[compared[0]]
     found = [
-        SourceOffset(kinds.table[code], kinds.table[compared[0]], int(counts[code]), float(size), float(deviation))
+        SourceOffset(kinds.table[code], reference, int(counts[code]), float(size), float(deviation), vertical)
         for code, size, deviation in zip(compared[1:], offset, sd, strict=True)
         if abs(size) > max(SURE * deviation, model.problem.settings.interior_tolerance)
     ]

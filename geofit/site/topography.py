@@ -97,7 +97,7 @@ def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -
 def _buried(plan: Floats, own: Floats, depth: Floats) -> Floats:
     """How deep (m) under the ground all three points around each place lie, if none of them is far off; else 0."""
     points, first = np.unique(own, axis=0, return_index=True)
-    # Matrices of two columns, one a triangle in Qhull: starting threads for each costs a hundred times the work.
+    # LAPACK starts threads even for matrices of two columns, which costs a hundred times the work.
     with threadpool_limits(limits=1):
         if len(points) < 3 or np.linalg.matrix_rank(points - points[0], tol=1e-6) < 2:
             return np.zeros(len(plan))

@@ -1,4 +1,4 @@
-"""Kinds of points that lie off the others as a whole."""
+"""Systematic offsets between kinds of points."""
 
 from __future__ import annotations
 
@@ -32,6 +32,7 @@ def test_picks_that_lie_off_as_a_whole_are_named(offset):
     assert (one.kind, one.reference, one.count) == ("geophysics", "borehole", PICKS)
     assert one.offset == pytest.approx(offset, abs=3 * one.sd)
     assert one.sd < 1.0
+    assert one.vertical
     assert one.text.code == ("data.source-above" if offset > 0 else "data.source-below")
     assert with_code(found.notes, "prediction.source-off").severity == "warning"
     verdict = verdict_of(surface.accuracy, found)
@@ -42,6 +43,22 @@ def test_picks_that_lie_off_as_a_whole_are_named(offset):
 def test_picks_that_only_scatter_more_are_not():
     _, found = examined(0.0)
     assert found.offsets == ()
+
+
+def test_the_offset_of_a_steep_surface_is_across_it():
+    rng = np.random.default_rng(2)
+    plane = rng.uniform(0, 400, (HOLES + PICKS, 2))
+    across = 5 * np.sin(plane[:, 0] / 60) * np.cos(plane[:, 1] / 70) + rng.normal(0, 0.3, HOLES + PICKS)
+    across[HOLES:] += 6.0
+    dip = np.radians(75)
+    up, aside = np.array([0.0, np.cos(dip), np.sin(dip)]), np.array([0.0, -np.sin(dip), np.cos(dip)])
+    xyz = np.outer(plane[:, 0], [1.0, 0.0, 0.0]) + np.outer(plane[:, 1], up) + np.outer(across, aside)
+    surface = fit_horizon(PointSet(xyz, kind=["borehole"] * HOLES + ["geophysics"] * PICKS))
+    assert surface.frame == "best-plane"
+    (one,) = examine(surface).offsets
+    assert not one.vertical
+    assert one.text.code == "data.source-aside"
+    assert abs(one.offset) == pytest.approx(6.0, abs=3 * one.sd)
 
 
 def test_points_of_one_kind_have_nothing_to_be_compared_with():
