@@ -164,7 +164,7 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None, where
                 "none of the {count} points can be predicted from the others, so the prediction error is unknown and "
                 "no standard deviation is reported",
                 count=len(given.value),
-            )
+            ).with_severity("warning")
         )
         return PredictionResult(tuple(results), None, (), outliers, tuple(notes))
     tell(progress, "next holes", 0.8)

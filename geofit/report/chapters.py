@@ -107,8 +107,9 @@ def _summary(report: AccuracyReport, t: Language) -> Chapter:
                 "σ = √(Σ d² / (n − 1)) over all n points; d is the orthogonal distance from a point to the surface, "
                 "positive above it. FAIL: σ is not below the control error ε. WARNING: it is, but a check fails, or "
                 "the surface is worse away from its data: the left-out error, the root mean square of what it misses "
-                "where holes, sections or blocks are left out (the worst of them), is above ε, or the 90 % band "
-                "contains too few of these points. PASS: none of this."
+                "where holes, sections or blocks are left out (the worst of them), is above ε or cannot be estimated, "
+                "the 90 % band contains too few of these points, or a source is systematically offset. PASS: none of "
+                "these."
             ),
             "quiet",
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from geofit.data.languages import Language, sentence, translate
-from geofit.data.messages import message
+from geofit.data.messages import gravest_first, message
 from geofit.data.verdict import LEAST_INSIDE
 from geofit.report import digits
 from geofit.report.accuracy_report import HorizonReport, LeftOutLine, PredictionReport
@@ -35,7 +35,10 @@ def prediction_blocks(h: HorizonReport, t: Language) -> list[Block]:
         )
     )
     blocks += _left_out(off, t)
-    blocks += [Paragraph(sentence(note, t), "quiet") for note in off.notes]
+    blocks += [
+        Paragraph(sentence(note, t), "quiet" if note.severity == "info" else "warning")
+        for note in gravest_first(off.notes)
+    ]
     blocks += _uncertainty(h, off, t)
     return blocks
 

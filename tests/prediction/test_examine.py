@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from refusals import with_code
 
 from geofit import PointSet, fit_horizon
 from geofit.data.verdict import verdict_of
@@ -27,7 +28,7 @@ def test_three_points_show_no_error_between_them():
     surface = fit_horizon(PointSet(TRIANGLE, hole=["A", "B", "C"]))
     found = examine(surface)
     assert found.uncertainty is None
-    assert "prediction.no-error-known" in {note.code for note in found.notes}
+    assert with_code(found.notes, "prediction.no-error-known").severity == "warning"
     verdict = verdict_of(surface.accuracy, found)
     assert (verdict.data.level, verdict.away.level, verdict.word) == ("pass", "warning", "WARNING")
     assert verdict.away.text.code == "data.verdict-cannot-examine"
