@@ -130,4 +130,5 @@ def _stacked(*widgets: QWidget) -> QWidget:
     layout.setSpacing(0)
     for widget in widgets:
         layout.addWidget(widget)
+    layout.setStretch(len(widgets) - 1, 1)
     return box

@@ -68,7 +68,8 @@ class VerdictBadge(QFrame):
         grid.addWidget(self._more, 4, 1)
         grid.addWidget(self._old, 5, 0, 1, 2)
         grid.setColumnStretch(1, 1)
-        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
+        # Not Maximum: that caps the height at that of shorter lines, and a long text in a narrow dock is cut.
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Minimum)
         self._level: Level = "none"
         self._stale = False
         self.show_accuracy(None, False)

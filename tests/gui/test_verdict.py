@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-import pytest
-from panel_samples import failing, fitted
+from dataclasses import replace
 
+import pytest
+from panel_samples import failing, fitted, prediction
+from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
+
+from geofit.data.prediction import SourceOffset
+from geofit.data.verdict import verdict_of
 from geofit.gui.panels.verdict import VerdictBadge
 
 
@@ -27,6 +32,27 @@ def test_empty(badge):
     badge.show_accuracy(None, True)
     assert "No surface yet" in str(badge.text)
     assert "Older" not in str(badge.text)
+
+
+@pytest.mark.parametrize("width", [230, 320])
+def test_a_long_text_is_not_cut_in_a_narrow_dock(qtbot, width):
+    accuracy, dock = fitted().accuracy, QWidget()
+    found = replace(prediction(accuracy.n), offsets=(SourceOffset("geophysics", "borehole", 200, 6.3, 0.7),))
+    badge, below = VerdictBadge(), QWidget()
+    column = QVBoxLayout(dock)
+    column.addWidget(badge)
+    column.addWidget(below, 1)
+    qtbot.addWidget(dock)
+    dock.resize(width, 700)
+    dock.show()
+    qtbot.waitExposed(dock)
+    badge.show_accuracy(accuracy, verdict=verdict_of(accuracy, found))
+    qtbot.waitUntil(lambda: badge.height() > 150)
+    assert "above those of kind 'borehole'" in badge.text
+    for label in badge.findChildren(QLabel):
+        if label.isVisible():
+            assert label.height() >= label.heightForWidth(label.width()), label.text()
+    assert below.height() > 300, "the badge takes no more than it needs"
 
 
 def test_the_figures_behind_the_verdict(badge):
