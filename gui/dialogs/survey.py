@@ -137,7 +137,7 @@ class SurveyDialog(SceneDialog):
         parts.addWidget(self.tabs)
         parts.setStretchFactor(0, 3)
         parts.setStretchFactor(1, 2)
-        # The misclosure of a loop is seen without scrolling.
+        # Wide enough to show the misclosure of a loop without scrolling.
         parts.setSizes([700, 460])
         parts.setChildrenCollapsible(False)
         layout = QVBoxLayout(self)
@@ -243,7 +243,7 @@ class SurveyDialog(SceneDialog):
             "rows": issue_columns(self.adjusted.survey),
         }.items():
             self.tables[name].show_columns(columns)
-            # An empty table says nothing: no loops, no wall missing, not cut by horizons, no row left out.
+            # Empty tables are hidden: there are no loops, missing walls, strata or unused rows to list.
             self.tabs.setTabVisible(self.tabs.indexOf(self.tables[name]), len(columns[0].values) > 0)
         # The volume makes the table of figures wider than it was.
         self.tables["figures"].resizeColumnsToContents()

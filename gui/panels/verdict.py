@@ -68,7 +68,7 @@ class VerdictBadge(QFrame):
         grid.addWidget(self._more, 4, 1)
         grid.addWidget(self._old, 5, 0, 1, 2)
         grid.setColumnStretch(1, 1)
-        # Not Maximum: that caps the height at that of shorter lines, and a long text in a narrow dock is cut.
+        # Maximum would cap the height at the size hint, which assumes wider lines, and cut long texts in a narrow dock.
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Minimum)
         self._level: Level = "none"
         self._stale = False
