@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from geofit.checks.lattice import PatchLattice, lattice_places
 from geofit.data.accuracy import Check
-from geofit.data.long_arrays import blocks
+from geofit.data.long_arrays import blocks, covariance
 from geofit.data.messages import message
 from geofit.geometry.elevation import plan_map
 from geofit.geometry.trim_loops import inside_loops
@@ -174,19 +174,16 @@ def _strip(surface: FittedSurface, parts: Sequence[PatchLattice]) -> list[Check]
         return []
     up = np.array([0.0, 0.0, 1.0]) if surface.frame == "map" else _majority(normal)
     flat = np.linalg.svd(up[None])[2][1:].T
-    middle = places.mean(axis=0) @ flat
+    directions = flat @ np.linalg.eigh(flat.T @ covariance(surface.points.xyz)[1] @ flat)[1]
 
-    def in_plane() -> Iterator[Floats]:
-        # Some points at a time: all at once would take as much memory again as their coordinates.
-        for (some,) in blocks(surface.points.xyz):
-            yield (some - surface.origin) @ flat - middle
+    def extent(direction: Floats) -> float:
+        # Some points at a time: all at once would take a third of their coordinates' memory again.
+        ends = [(at.min(), at.max()) for at in (some @ direction for (some,) in blocks(surface.points.xyz))]
+        low, high = np.transpose(ends)
+        return float(high.max() - low.min())
 
-    mean = sum((at.sum(axis=0) for at in in_plane()), np.zeros(2)) / len(surface.points)
-    spread = sum(((at - mean).T @ (at - mean) for at in in_plane()), np.zeros((2, 2)))
-    directions = np.linalg.eigh(spread)[1]
-    ends = np.array([(turned.min(axis=0), turned.max(axis=0)) for turned in (at @ directions for at in in_plane())])
-    across, along = ends[:, 1].max(axis=0) - ends[:, 0].min(axis=0)
-    wide = float(np.ptp(places @ flat @ directions[:, 0]))
+    across, along = (extent(direction) for direction in directions.T)
+    wide = float(np.ptp(places @ directions[:, 0]))
     if across >= STRIP * along or wide <= 2 * across:
         return []
     text = message(

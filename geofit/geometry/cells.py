@@ -73,12 +73,9 @@ class Cells:
     def locate(self, patch: int, u: Floats, v: Floats) -> Place:
         """Return the cells and local coordinates of parameters of one patch, clamped to its domain."""
         (bu, bv), (_, nv) = self.breaks[patch], self.shape[patch]
-        u, v = np.clip(u, bu[0], bu[-1]), np.clip(v, bv[0], bv[-1])
-        i = np.clip(np.searchsorted(bu, u, side="right") - 1, 0, len(bu) - 2)
-        j = np.clip(np.searchsorted(bv, v, side="right") - 1, 0, len(bv) - 2)
-        cell = self.first[patch] + i * nv + j
-        local = (np.stack([u, v]) - self.centre[:, cell]) / self.half[:, cell]
-        return Place(cell, np.clip(local, -1.0, 1.0))
+        cell = self.first[patch] + bspline.intervals(bu, u) * nv + bspline.intervals(bv, v)
+        local = (np.stack([u, v]) - self.centre.take(cell, axis=1)) / self.half.take(cell, axis=1)
+        return Place(cell, local.clip(-1.0, 1.0))
 
     def parameters(self, place: Place) -> tuple[Floats, Floats]:
         """Return u, v of places."""

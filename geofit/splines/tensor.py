@@ -29,8 +29,9 @@ __all__ = ["Factor", "TensorSpace", "band_sum", "band_times"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-#: From this many points on, normal equations are summed by cells instead of by points.
-CELLWISE = 20_000
+#: From this many points a control point on, normal equations are summed by cells instead of by points: a cell takes as
+#: long as two points do.
+CELLWISE = 2
 #: Added to a unit diagonal, more where rounding has made a system indefinite: it settles what neither data nor
 #: energy hold by the trend, far below any noise.
 RIDGES = (1e-13, 1e-12, 1e-10)
@@ -105,7 +106,8 @@ class TensorSpace:
 
     def normal_equations(self, plane: Rows, z: Rows, weight: Floats) -> tuple[Floats, Floats]:
         """Return the band of X' W X, (bandwidth + 1, size), and X' W z, (size,) or (size, k)."""
-        if isinstance(plane, np.ndarray) and isinstance(z, np.ndarray) and (len(plane) < CELLWISE or z.ndim > 1):
+        few = len(plane) < CELLWISE * self.size
+        if isinstance(plane, np.ndarray) and isinstance(z, np.ndarray) and (few or z.ndim > 1):
             return self._by_points(plane, z, weight)
         return self.equations(self.sums(plane, z, weight))
 

@@ -80,7 +80,7 @@ def test_several_columns_at_once_equal_one_by_one():
 @pytest.mark.parametrize(("degree", "multiplicity"), [(1, 1), (2, 2), (3, 1), (3, [2, 3, 1])])
 def test_cells_and_points_give_the_same_normal_equations(degree, multiplicity, monkeypatch):
     space = space_of(degree, multiplicity)
-    plane, z, weight = scattered(space, CELLWISE)
+    plane, z, weight = scattered(space, CELLWISE * space.size)
     by_cells = space.normal_equations(plane, z, weight)
     monkeypatch.setattr(tensor, "CELLWISE", CELLWISE + 1)
     by_points = space.normal_equations(plane, z, weight)
