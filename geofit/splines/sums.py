@@ -8,6 +8,7 @@ spline leaves of them is then found from the sums as well, without a second look
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -171,6 +172,7 @@ def _local_polynomials(knots: Floats, degree: int) -> tuple[Ints, Floats]:
     return first[:: degree + 1], np.einsum("kq,cqa->cak", inverse, at_nodes)
 
 
+@cache
 def _legendre_products(degree: int) -> Floats:
     """Return L with P_i P_j = sum_k L[i, j, k] P_k."""
     size = degree + 1
