@@ -269,6 +269,21 @@ _TRIES = (
         "rises to 1.05, and 7 on Kimberlina, base of macoma: 82.8 m with one range, 60.1 m with both (geofit: 61.2 m)",
         "no",
     ),
+    (
+        "the field's space reaches 3 units beyond the area in spans that double, instead of 1.5 in spans that grow by "
+        "half",
+        "sites 0 to 199: core, GM 1.001 of before, whole 0.985, worst 1.81 to 1.54; real lines 0.981, Weka Hills, top "
+        "of Siltstone 0.70; time 1.02. Growing by half up to 3 or 6: whole 0.988 and 0.982, real lines 0.989 and "
+        "0.991, time 1.28 and 1.32; by two and a half up to 5, threefold up to 6: whole 1.005 and 1.039",
+        "yes",
+    ),
+    (
+        "every smoothness within 60 of the best on the first level is resolved, and the likelihood decides between the "
+        "resolved ones",
+        "sites 0 to 199: core 0.992, on single ones 0.52 to 1.05, whole 1.003, on single ones 0.96 to 1.33, above the "
+        "thin plate on 27 for 22; real lines 0.998; 1,000 points of a rough truth 1.047 to 1.005 m, twice the time",
+        "no",
+    ),
 )
 
 

@@ -53,8 +53,9 @@ CONTRADICTION = 0.5
 ENOUGH = 16
 #: Standard deviation across a strip, in units of the spacing, below which it counts as a line.
 _NARROW = 0.05
-#: How far the field's space reaches beyond the area, in units, and how fast its spans grow there.
-_BEYOND, _GROWTH = 1.5, 1.5
+#: How far the field's space reaches beyond the area, in units, and how fast its spans grow there: by the free edges of
+#: the space the field varies more than the covariance says, the farther in the longer its range is.
+_BEYOND, _GROWTH = 3.0, 2.0
 #: Starts of the search: kappa per unit, and rho.
 _KAPPAS, _RHOS = (0.1, 0.7), (5e-5, 2e-3, 0.1)
 #: The smoothness to try where one is the best of those that are always compared.
