@@ -26,7 +26,8 @@ SHARE = 0.7
 def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
     """Adjust locally until sigma is below epsilon or no step helps, and say which.
 
-    Points that are known less accurately than the tolerance are not chased.
+    Points that are known less accurately than the tolerance are not chased, nor those of a cloud or of data that
+    contradict each other.
     """
     given = model.problem
     for step in range(given.settings.max_iterations + 1):
@@ -47,6 +48,15 @@ def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
             words = message(
                 "fitting.sigma-of-cloud",
                 "sigma stays above epsilon: the points of a cloud are not met one by one",
+            )
+            surface = _with_note(surface, words.with_severity("warning"))
+            break
+        # A smoothing that was given may be stiffer than the data ask for.
+        chosen = given.settings.smoothing == "auto" and not given.settings.strict
+        if chosen and model.net.field.contradictory:
+            words = message(
+                "fitting.sigma-of-contradiction",
+                "sigma stays above epsilon: data that contradict each other are not met one by one",
             )
             surface = _with_note(surface, words.with_severity("warning"))
             break

@@ -279,7 +279,8 @@ def choose_covariance(
     fields = []
     for optimum in found:
         own = math.sqrt(optimum.variance) if optimum.value < UNSOLVABLE else math.nan
-        contradictory = not few and own > CONTRADICTION * max(scatter, FINEST)
+        # Of an exact plane the noise is what keeps the likelihood finite.
+        contradictory = not few and own > max(CONTRADICTION * scatter, 2 * FINEST)
         covariance = (optimum.alpha, optimum.kappa, optimum.rho, optimum.stretch)
         field = FieldChoice(*covariance, own, contradictory, scatter, optimum.hold)
         fields.append((field.turned if turned else field, optimum.value))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from refusals import with_code
 from threadpoolctl import threadpool_limits
-from truth import EASTING, NORTHING, paper_arrangement
+from truth import EASTING, NORTHING, paper_arrangement, rms
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.checks.check import sigma
@@ -98,3 +98,16 @@ def test_a_contradiction_cannot_be_adjusted_away():
     assert surface.accuracy.max_abs == pytest.approx(4.0, rel=0.05)
     assert len(surface.accuracy.conflicts) == len(points)
     assert with_code(surface.accuracy.notes, "fitting.sigma-above-epsilon").severity == "warning"
+
+
+def test_data_that_contradict_each_other_are_not_chased():
+    rng = np.random.default_rng(1)
+    plan = rng.uniform(0, 2000, (60, 2))
+    plane = 100 + 0.05 * plan[:, 0]
+    points = PointSet(np.column_stack([plan, plane + rng.normal(0, 20, len(plan))]))
+    surface = fit_horizon(points)
+    assert not surface.accuracy.passed
+    assert with_code(surface.accuracy.notes, "fitting.sigma-of-contradiction").severity == "warning"
+    assert rms(surface.elevation(*plan.T) - plane) < 6.0
+    strict = fit_horizon(points, FitSettings(strict=True))
+    assert strict.accuracy.sigma < 0.1 * surface.accuracy.sigma
