@@ -35,6 +35,7 @@ __all__ = [
     "as_smooth",
     "choose_covariance",
     "drift_of",
+    "held_planes",
     "plane_trend",
     "planes_of",
     "precision_band",
@@ -53,8 +54,8 @@ CONTRADICTION = 0.5
 ENOUGH = 16
 #: Standard deviation across a strip, in units of the spacing, below which it counts as a line.
 _NARROW = 0.05
-#: How far the field's space reaches beyond the area, in units, and how fast its spans grow there: by the free edges of
-#: the space the field varies more than the covariance says, the farther in the longer its range is.
+#: How far the field's space reaches beyond the area, in units, and how fast its spans grow there. Near the free edges
+#: of the space the field varies more than the covariance says; the longer its range, the farther in.
 _BEYOND, _GROWTH = 3.0, 2.0
 #: Starts of the search: kappa per unit, and rho.
 _KAPPAS, _RHOS = (0.1, 0.7), (5e-5, 2e-3, 0.1)
@@ -360,10 +361,10 @@ def smooth(
         of_slopes = measured.equations(wide, field.noise)
         band, right = band + of_slopes[0], right + of_slopes[1]
     precision, slope = MaternPrecision(wide, field.alpha), slope_of(plane, trend, measured)
-    band = band_sum(band, field.rho * precision.band(field.kappa, field.stretch))
-    held = field.rho * precision.times_planes(field.kappa, field.stretch) @ slope.directions
+    factor = Factor(band_sum(band, field.rho * precision.band(field.kappa, field.stretch)))
+    held = held_planes(precision, field, slope, factor.ridge)
     columns = right.reshape(len(right), -1)
-    solved = Factor(band).solve(np.column_stack([columns, held]))
+    solved = factor.solve(np.column_stack([columns, held]))
     free, drifted = solved[:, : columns.shape[1]], solved[:, columns.shape[1] :]
     moment, cross = planes_of(wide, slope, field.hold, held, free, drifted)
     slopes = np.linalg.lstsq(moment, cross, rcond=None)[0]
@@ -377,6 +378,15 @@ def smooth(
 
 def _exchanged(trend: Floats | None) -> Floats | None:
     return None if trend is None else trend[[0, 2, 1]]
+
+
+def held_planes(precision: MaternPrecision, field: FieldChoice, slope: Slope, ridge: Floats) -> Floats:
+    """Return rho E times the planes, (size, r), with the ridge (size,) of the system's factor as a part of E.
+
+    The ridge holds the field to the plane then. Otherwise it would flatten a plane that only measured slopes determine.
+    """
+    held = field.rho * precision.times_planes(field.kappa, field.stretch)
+    return np.asarray((held + ridge[:, None] * plane_coefficients(precision.space)) @ slope.directions)
 
 
 def planes_of(

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from geofit.fitting.active_points import gather_points
-from geofit.fitting.field import FieldChoice, planes_of, relative_noise, slope_of, widened_space
+from geofit.fitting.field import FieldChoice, held_planes, planes_of, relative_noise, slope_of, widened_space
 from geofit.fitting.model import Model
 from geofit.fitting.resolution import even_space
 from geofit.splines.blocks import BlockFactor, InverseBlocks
@@ -178,8 +178,8 @@ def posterior(model: Model) -> Posterior:
         band, right, weighed = band + of_slopes[0], right + of_slopes[1], of_slopes[2]
     precision, slope = MaternPrecision(space, field.alpha), slope_of(plane, trend, measured)
     prior = field.rho * precision.band(field.kappa, field.stretch)
-    held = field.rho * precision.times_planes(field.kappa, field.stretch) @ slope.directions
     factor = BlockFactor(band_sum(band, prior))
+    held = held_planes(precision, field, slope, factor.ridge)
     solved = factor.solve(np.column_stack([right, held]))
     columns = solved.shape[1] - held.shape[1]
     free, drift = solved[:, :columns], solved[:, columns:]

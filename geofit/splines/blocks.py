@@ -34,6 +34,11 @@ class BlockFactor:
     band : (bandwidth + 1, size) array
         Lower band: ``band[k, j] = A[j + k, j]``.
 
+    Attributes
+    ----------
+    ridge : (size,) array
+        What was added to the diagonal.
+
     Raises
     ------
     FitError
@@ -57,6 +62,7 @@ class BlockFactor:
         for ridge in RIDGES:
             try:
                 self._factorise(diagonal, below, ridge)
+                self.ridge: Floats = ridge * band[0]
                 return
             except LinAlgError:
                 continue

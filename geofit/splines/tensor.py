@@ -172,6 +172,8 @@ class TensorSpace:
 class Factor:
     """Banded Cholesky factor of a symmetric positive definite matrix.
 
+    ``ridge`` (size,) is what was added to its diagonal.
+
     Raises
     ------
     FitError
@@ -196,10 +198,13 @@ class Factor:
         scaled = np.array(band, order="F")
         scaled *= self._scale
         scaled *= sliding_window_view(beyond, band.shape[1])
+        added = 0.0
         for ridge in RIDGES:
             scaled[0] += ridge
+            added += ridge
             try:
                 self._band = cholesky_banded(scaled, lower=True, check_finite=False)
+                self.ridge: Floats = added * diagonal
                 return
             except LinAlgError:
                 continue
