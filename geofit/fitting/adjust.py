@@ -29,7 +29,7 @@ def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
     Points that are known less accurately than the tolerance are not chased, nor those of a cloud or of data that
     contradict each other.
     """
-    given = model.problem
+    given, left = model.problem, _left_as_they_are(model)
     for step in range(given.settings.max_iterations + 1):
         accuracy = surface.accuracy
         assert accuracy is not None
@@ -44,21 +44,8 @@ def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
                     ),
                 )
             break
-        if len(given.points) > CLOUD and not given.settings.strict:
-            words = message(
-                "fitting.sigma-of-cloud",
-                "sigma stays above epsilon: the points of a cloud are not met one by one",
-            )
-            surface = _with_note(surface, words.with_severity("warning"))
-            break
-        # A smoothing that was given may be stiffer than the data ask for.
-        chosen = given.settings.smoothing == "auto" and not given.settings.strict
-        if chosen and model.net.field.contradictory:
-            words = message(
-                "fitting.sigma-of-contradiction",
-                "sigma stays above epsilon: data that contradict each other are not met one by one",
-            )
-            surface = _with_note(surface, words.with_severity("warning"))
+        if left is not None:
+            surface = _with_note(surface, left.with_severity("warning"))
             break
         movable = given.kept & ~surface.core
         if not given.settings.strict:
@@ -77,6 +64,25 @@ def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
         assert tried is not None
         model, surface = tried, candidate
     return surface
+
+
+def _left_as_they_are(model: Model) -> Message | None:
+    """Return why points beyond the tolerance stay where they are, or None."""
+    settings = model.problem.settings
+    if settings.strict:
+        return None
+    if len(model.problem.points) > CLOUD:
+        return message(
+            "fitting.sigma-of-cloud",
+            "sigma stays above epsilon: the points of a cloud are not met one by one",
+        )
+    # A smoothing that was given may be stiffer than the data ask for.
+    if settings.smoothing == "auto" and model.net.field.contradictory:
+        return message(
+            "fitting.sigma-of-contradiction",
+            "sigma stays above epsilon: data that contradict each other are not met one by one",
+        )
+    return None
 
 
 def pull_to_worst(
