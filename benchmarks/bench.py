@@ -38,6 +38,7 @@ SCRIPTS = {
     "truths": ("fit.py", "truths"),
     "storage": ("fit.py", "storage"),
     "large": ("fit.py", "large"),
+    "scattered": ("field.py", "scattered", "10000"),
     "distance": ("distance.py",),
 }
 Figures = dict[str, Any]

@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-__all__ = ["foot", "jet_at", "walks"]
+__all__ = ["feet_over_plan", "foot", "jet_at", "walks"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -208,3 +208,90 @@ def walks(table: Floats, neighbour: Ints, noise: float, cell: Ints, local: Float
     for i in range(len(cell)):
         c, s, t, fine, _ = foot(table, neighbour, noise, cell[i], local[0, i], local[1, i], target[i], jet)
         cell[i], local[0, i], local[1, i], done[i] = c, s, t, fine
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _interval(breaks: Floats, x: float) -> int:
+    """Return the index k with breaks[k] <= x < breaks[k + 1]; the first and the last hold what lies beyond."""
+    low, high = 0, len(breaks) - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if x < breaks[middle]:
+            high = middle
+        else:
+            low = middle
+    return low
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def feet_over_plan(
+    table: Floats,
+    breaks_u: Floats,
+    breaks_v: Floats,
+    domain: Floats,
+    start: Floats,
+    matrix: Floats,
+    inverse: Floats,
+    slope: float,
+    bend: float,
+    limits: tuple[int, float, float, float],
+    target: Floats,
+    distance: Floats,
+    foot: Floats,
+    u: Floats,
+    v: Floats,
+    done: Bools,
+) -> None:
+    """Walk to the feet of (n, 3) points on a height field, as :mod:`geofit.geometry.foot_points` does step by step.
+
+    ``limits`` are its STEPS, CONVEX, LAST and TOUCHING; what is found is written to ``distance`` (n,), ``foot`` (n, 3),
+    ``u``, ``v`` and ``done`` (n,). Points that are done are left alone.
+    """
+    steps, convex, last, touching = limits
+    low_u, high_u, low_v, high_v = domain[0], domain[1], domain[2], domain[3]
+    m00 = matrix[0, 0] * matrix[0, 0] + matrix[1, 0] * matrix[1, 0]
+    m01 = matrix[0, 0] * matrix[0, 1] + matrix[1, 0] * matrix[1, 1]
+    m11 = matrix[0, 1] * matrix[0, 1] + matrix[1, 1] * matrix[1, 1]
+    wide_u, wide_v = math.hypot(inverse[0, 0], inverse[0, 1]), math.hypot(inverse[1, 0], inverse[1, 1])
+    jet = np.empty((6, 4))
+    for i in range(len(target)):
+        x, y = target[i, 0] - start[0], target[i, 1] - start[1]
+        u0, v0 = inverse[0, 0] * x + inverse[0, 1] * y, inverse[1, 0] * x + inverse[1, 1] * y
+        if done[i] or not (low_u <= u0 <= high_u and low_v <= v0 <= high_v):
+            continue
+        at_u, at_v, apart = u0, v0, np.inf
+        for step in range(steps):
+            k, m = _interval(breaks_u, at_u), _interval(breaks_v, at_v)
+            half_u, half_v = (breaks_u[k + 1] - breaks_u[k]) / 2, (breaks_v[m + 1] - breaks_v[m]) / 2
+            s, t = (at_u - breaks_u[k]) / half_u - 1, (at_v - breaks_v[m]) / half_v - 1
+            jet_at(table, k * (len(breaks_v) - 1) + m, s, t, jet)
+            zu, zv = jet[1, 0] / half_u, jet[2, 0] / half_v
+            zuu, zuv, zvv = jet[3, 0] / half_u**2, jet[4, 0] / (half_u * half_v), jet[5, 0] / half_v**2
+            r, du, dv = jet[0, 0] - target[i, 2], at_u - u0, at_v - v0
+            if step == 0:
+                apart = abs(r)
+                reach = 0.0 if apart < touching else apart
+                if not apart * (1 + slope) * bend <= convex:
+                    break
+                if u0 - wide_u * reach < low_u or u0 + wide_u * reach > high_u:
+                    break
+                if v0 - wide_v * reach < low_v or v0 + wide_v * reach > high_v:
+                    break
+            gu, gv = m00 * du + m01 * dv + r * zu, m01 * du + m11 * dv + r * zv
+            e, f, g = m00 + zu * zu, m01 + zu * zv, m11 + zv * zv
+            a, b, c = e + r * zuu, f + r * zuv, g + r * zvv
+            det = a * c - b * b
+            su, sv = (b * gv - c * gu) / det, (b * gu - a * gv) / det
+            at_u, at_v, du, dv = at_u + su, at_v + sv, du + su, dv + sv
+            if e * su * su + 2 * f * su * sv + g * sv * sv < last * last:
+                bend_u, bend_v = zuu * su + zuv * sv, zuv * su + zvv * sv
+                r += (zu + bend_u / 2) * su + (zv + bend_v / 2) * sv
+                off_x, off_y = matrix[0, 0] * du + matrix[0, 1] * dv, matrix[1, 0] * du + matrix[1, 1] * dv
+                if math.hypot(off_x, off_y) <= apart + last:
+                    length = math.sqrt(off_x * off_x + off_y * off_y + r * r)
+                    side = du * (zu + bend_u) + dv * (zv + bend_v) - r
+                    distance[i] = -length if side < 0 else length
+                    foot[i, 0], foot[i, 1], foot[i, 2] = target[i, 0] + off_x, target[i, 1] + off_y, target[i, 2] + r
+                    u[i], v[i] = min(max(at_u, low_u), high_u), min(max(at_v, low_v), high_v)
+                    done[i] = True
+                break

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.threads import side_by_side
 from geofit.geometry.cells import BATCH, Cells, Place, tabulate
 from geofit.geometry.elevation import plan_map
 from geofit.splines import bspline
@@ -35,6 +36,8 @@ CONVEX = 0.5
 STEPS, LAST = 8, 1e-6
 #: Metres from the surface within which a point is on it: its place in plan is its foot point, at a seam too.
 TOUCHING = 1e-9
+#: From this many points on, compiled loops are worth loading: they take less than half the time.
+COMPILED = 100_000
 #: Shares of their size by which the plans of patches side by side may differ and overlap.
 ONE = 1e-11
 #: How far the control points may be from the plan's map, metres.
@@ -83,6 +86,9 @@ def foot_points_over_plan(patches: Sequence[Patch], target: Floats) -> Projectio
     """
     found = Projection.unknown(len(target))
     for field in Patches.of(patches).prepared(_fields):
+        if len(target) >= COMPILED:
+            _compiled_walks(field, target, found)
+            continue
         x, y = target[:, 0] - field.start[0], target[:, 1] - field.start[1]
         u, v = (a * x + b * y for a, b in field.inverse)
         low_u, high_u, low_v, high_v = field.domain
@@ -118,6 +124,36 @@ class _Field:
         local = np.stack([(u - centre_u) / half_u, (v - centre_v) / half_v])
         z, zu, zv, zuu, zuv, zvv = (row[0] for row in self.cells.jets(Place(cell, local)))
         return [z, zu / half_u, zv / half_v, zuu / half_u**2, zuv / (half_u * half_v), zvv / half_v**2]
+
+
+def _compiled_walks(field: _Field, target: Floats, found: Projection) -> None:
+    """Walk from the places above or below all points by compiled loops, on all processors."""
+    from geofit.geometry.foot_loops import feet_over_plan
+
+    (breaks_u, breaks_v), already = field.cells.breaks[0], found.converged.copy()
+
+    def walk(some: slice) -> None:
+        feet_over_plan(
+            field.cells.table,
+            breaks_u,
+            breaks_v,
+            np.array(field.domain),
+            field.start,
+            field.matrix,
+            field.inverse,
+            field.slope,
+            field.bend,
+            (STEPS, CONVEX, LAST, TOUCHING),
+            target[some],
+            found.distance[some],
+            found.foot[some],
+            found.u[some],
+            found.v[some],
+            found.converged[some],
+        )
+
+    side_by_side(walk, len(target))
+    found.patch[found.converged & ~already] = field.patch
 
 
 def _walk(field: _Field, u0: Floats, v0: Floats, rows: Ints, target: Floats, found: Projection) -> None:

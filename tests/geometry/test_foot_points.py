@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from surfaces import fold, height_field, nine, wave
 
+from geofit.geometry import foot_points
 from geofit.geometry import projection as distance
 from geofit.geometry.foot_points import foot_points_over_plan
 
@@ -38,6 +39,24 @@ def test_every_patch_of_a_surface_has_its_own_feet():
     assert np.unique(found.patch[sure]).tolist() == list(range(len(patches)))
     np.testing.assert_array_equal(found.patch[sure], searched.patch[sure])
     np.testing.assert_allclose(found.distance[sure], searched.distance[sure], atol=1e-10)
+
+
+@pytest.mark.parametrize("spread", [1e-6, 0.3, 5.0, 80.0])
+def test_compiled_walks_prove_what_arrays_prove(monkeypatch, spread):
+    _, seamed = nine()
+    for patches in (seamed, [height_field(turn=0.7)], [height_field(nu=24, nv=18)]):
+        rng, xyz = np.random.default_rng(5), np.concatenate([beside(patch, 400, spread) for patch in patches])
+        # Some beyond the surface, some exactly on its rim and seams.
+        xyz = np.concatenate([xyz, xyz[:50] + rng.normal(0, 400, (50, 3))])
+        xyz = np.concatenate([xyz, *(patch.control.reshape(-1, 3)[[0, -1]] for patch in patches)])
+        by_arrays = foot_points_over_plan(patches, xyz)
+        monkeypatch.setattr(foot_points, "COMPILED", 1)
+        compiled = foot_points_over_plan(patches, xyz)
+        monkeypatch.undo()
+        np.testing.assert_array_equal(compiled.converged, by_arrays.converged)
+        np.testing.assert_array_equal(compiled.patch, by_arrays.patch)
+        for name in ("distance", "foot", "u", "v"):
+            np.testing.assert_allclose(getattr(compiled, name), getattr(by_arrays, name), atol=1e-9, err_msg=name)
 
 
 def test_what_may_have_another_foot_is_left_to_the_search():
