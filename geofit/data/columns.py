@@ -29,7 +29,12 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
     """
     if isinstance(given, np.ndarray) and _fixed(given, np.float64) and given.ndim == 2 and given.shape[1] == 3:
         return given
+    if isinstance(given, np.ma.MaskedArray):
+        # What is masked is not known, whatever number stands there.
+        given = np.ma.filled(given.astype(np.float64), np.nan)
     try:
+        if np.iscomplexobj(given):
+            raise TypeError("they are complex")
         xyz = np.array(given, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
         raise PointsError(
@@ -127,6 +132,8 @@ def column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
     PointsError
         If the values cannot be read as ``dtype``, or are neither n nor one.
     """
+    if isinstance(values, np.ma.MaskedArray) and np.issubdtype(dtype, np.floating):
+        values = np.ma.filled(values.astype(dtype), np.nan)
     try:
         array: NDArray[Any] = np.asarray(values, dtype=dtype)
     except (TypeError, ValueError, OverflowError) as error:

@@ -53,8 +53,10 @@ def reason_of(error: Exception) -> Message:
     """Return what an error says; of an unforeseen one also the kind and the line, for the report to the developers."""
     if isinstance(error, GeofitError):
         return error.message
-    frame = traceback.extract_tb(error.__traceback__)[-1:]
-    place = f"{Path(frame[0].filename).name}:{frame[0].lineno}" if frame else "?"
+    frames = list(traceback.walk_tb(error.__traceback__))
+    # The last line of geofit's own: a library's says little of what was asked of it.
+    own = [one for one in frames if _own(str(one[0].f_globals.get("__name__")))] or frames
+    place = f"{Path(own[-1][0].f_code.co_filename).name}:{own[-1][1]}" if own else "?"
     return message(
         "data.unforeseen-error",
         "unforeseen error {kind} ({text}; {place}); please report it",
@@ -62,3 +64,7 @@ def reason_of(error: Exception) -> Message:
         text=" ".join(str(error).split())[:200],
         place=place,
     )
+
+
+def _own(module: str) -> bool:
+    return module.split(".")[0] == "geofit" and module != __name__

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from geofit.data.errors import MissingDependencyError
 from geofit.data.files import replacing
+from geofit.data.guard import guarded
 from geofit.data.languages import EN, Language, together, translate
 from geofit.data.messages import Message
 from geofit.data.site import Section
@@ -56,11 +56,9 @@ class Pictures:
 
 def draw_pictures(result: HorizonResult, t: Language = EN) -> Pictures:
     """Draw all pictures of a horizon, with words in a language."""
-    try:
-        view: Scene | None = scene.horizon_scene(result)
-        missing: Message | None = None
-    except MissingDependencyError as error:
-        view, missing = None, error.message
+    missing: list[Message] = []
+    nothing: Scene | None = None
+    view = guarded(lambda: scene.horizon_scene(result), nothing, missing.append)
     sheet = plan_sheet(result)
     flat = {
         "plan": _map(plots.site_plan, result, t, plots.map_shape(result, plan=True))
@@ -78,7 +76,8 @@ def draw_pictures(result: HorizonResult, t: Language = EN) -> Pictures:
         flat["dips"] = _dips(result, t)
     if result.change is not None:
         flat["change"] = draw_change(result.change, t)
-    return Pictures({picture_name(what, result.name): data for what, data in flat.items()}, view, missing)
+    named = {picture_name(what, result.name): data for what, data in flat.items()}
+    return Pictures(named, view, next(iter(missing), None))
 
 
 def _dips(result: HorizonResult, t: Language) -> bytes:
@@ -111,10 +110,13 @@ def draw_site(results: Sequence[HorizonResult], t: Language = EN) -> Pictures:
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch as Swatch
 
-    try:
-        view = scene.site_scene([r.surface for r in results], results[0].site.holes)
-    except MissingDependencyError as error:
-        return Pictures({}, None, error.message)
+    missing: list[Message] = []
+    nothing: Scene | None = None
+    view = guarded(
+        lambda: scene.site_scene([r.surface for r in results], results[0].site.holes), nothing, missing.append
+    )
+    if view is None:
+        return Pictures({}, None, missing[0])
     with drawing(TYPE):
         figure = Figure(figsize=(WIDTH, COVER), dpi=DOTS)
         axes = figure.add_axes((0.085, 0.115, 0.83, 0.865))

@@ -17,6 +17,7 @@ from geofit.prediction import crossval
 from geofit.prediction.examine import examine
 from geofit.project.run import run_horizons
 from geofit.site import fit_site as sitefit
+from geofit.splines import bspline
 
 
 def cloud(n=30, seed=0):
@@ -52,6 +53,12 @@ def test_an_unforeseen_error_is_reported_with_its_kind_and_line():
     assert notes[0].code == "data.unforeseen-error"
     assert str(notes[0]).startswith("unforeseen error ZeroDivisionError (planted; test_guard.py:")
     assert translate(notes[0], ZH).startswith("未预见的错误 ZeroDivisionError（planted")
+
+
+def test_an_error_inside_a_library_names_the_line_of_geofit_that_called_it():
+    notes = []
+    guarded(lambda: bspline.basis(np.array(["a"]), 3, np.zeros(1)), None, notes.append)
+    assert "; bspline.py:" in str(notes[0])
 
 
 @pytest.mark.parametrize("stop", [Cancelled(message("test.text", "stopped")), KeyboardInterrupt()])

@@ -52,6 +52,12 @@ def test_no_points_are_a_set_too(empty):
         (np.zeros((2, 3, 3)), "data.coordinates-wrong-shape", {"name": "xyz", "shape": (2, 3, 3)}),
         ([["a", 0, 0]], "data.coordinates-not-numbers", {"name": "xyz"}),
         ([[0, 0, 0], [0, 0]], "data.coordinates-not-numbers", {"name": "xyz"}),
+        (np.ones((3, 3)) + 1j, "data.coordinates-not-numbers", {"name": "xyz"}),
+        (
+            np.ma.masked_equal([[0, 0, 1], [1, 1, -99999]], -99999),
+            "data.points-not-finite",
+            {"count": 1, "total": 2, "index": 1},
+        ),
         (
             [[0, 0, 0], [1, np.nan, 2], [np.nan] * 3],
             "data.points-not-finite",
@@ -93,6 +99,11 @@ def test_errors_are_geofit_errors_and_value_errors():
 def test_nan_stands_for_an_accuracy_that_is_not_stated():
     points = three(accuracy=[np.nan, 0.5, np.nan])
     assert np.isnan(points.accuracy[[0, 2]]).all()
+
+
+def test_a_masked_accuracy_is_not_stated():
+    points = three(accuracy=np.ma.masked_less([-1.0, 0.5, 0.2], 0))
+    np.testing.assert_array_equal(points.accuracy, [np.nan, 0.5, 0.2])
 
 
 def test_points_cannot_be_changed():
