@@ -11,7 +11,7 @@ from geofit.data.messages import Message, message
 from geofit.fitting.density import CLOUD
 from geofit.fitting.horizon_fit import HorizonFit, fit_of
 from geofit.fitting.model import Model
-from geofit.fitting.net import Net
+from geofit.fitting.net import Net, crowded
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.skin import regularized_correction
 
@@ -78,6 +78,12 @@ def _left_as_they_are(model: Model) -> Message | None:
         )
     # A smoothing that was given may be stiffer than the data ask for.
     if settings.smoothing == "auto" and model.net.field.contradictory:
+        given = model.problem
+        if crowded(model.net.base, given.parametrization.plane[given.kept] / model.net.unit) is not None:
+            return message(
+                "fitting.sigma-of-wide-area",
+                "sigma stays above epsilon: in a study area that is far wider than the points they are not followed",
+            )
         return message(
             "fitting.sigma-of-contradiction",
             "sigma stays above epsilon: data that contradict each other are not met one by one",

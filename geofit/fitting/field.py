@@ -295,8 +295,8 @@ def _search(likelihood: Callable[[int], Likelihood], degree: int, n: int, rho: f
     free = [k for k in EVERY[: 2 if few else 4] if k != 1 or rho is None]
     found: list[Optimum] = []
     for alpha in alphas:
-        judge, kappas = likelihood(alpha), _KAPPAS if alpha == 2 else _KAPPAS[-1:]
-        starts = itertools.product(kappas, _RHOS if rho is None else (rho,))
+        judge = likelihood(alpha)
+        starts = itertools.product(_KAPPAS, _RHOS if rho is None else (rho,))
         places = [judge.parameters(*start, (0.0, 0.0)) for start in starts]
         found.append(maximize(judge, places, free, found[0].value if found else math.inf))
     best = min(found, key=lambda one: one.value)

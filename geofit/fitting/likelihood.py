@@ -39,8 +39,9 @@ SMALLER = 12.0
 #: Largest part of the stretch, which its prior hardly ever lets it reach.
 STRETCH = 1.0
 #: Least inverse range, in the direction of the longest, of the fields that are bent less than a thin plate between
-#: their points, for each time that their form is applied: of a longer range they run on as parabolas beyond the points.
-CURVED = 0.4
+#: their points, for each time that their form is applied. A gentle bowl asks for a range of ten spacings and more; one
+#: of fifty has come to grief on rounding. Of very many points, which can tell, half the area may be within the range.
+CURVED, ACROSS = 0.1, 2.0
 #: Size of a stretch below which the direction of the longest range hardly counts: keeps the likelihood smooth there.
 ROUND = 0.05
 #: (kappa * span)^(2 order) below which the form is singular to working precision.
@@ -146,7 +147,9 @@ class Likelihood:
         self.floor = n * self.columns.shape[1] * FINEST**2
         spans = [np.diff(np.unique(knots)) for knots in (space.knots_u, space.knots_v)]
         span = math.sqrt(float(np.median(spans[0])) * float(np.median(spans[1])))
-        least = math.log(CURVED * self.precision.power) if alpha > 2 else LOG_KAPPA[0]
+        side = math.sqrt(math.prod(float((part < 1.5 * np.median(part)).sum() * np.median(part)) for part in spans))
+        curved = self.precision.power * min(CURVED, ACROSS / side)
+        least = math.log(curved) if alpha > 2 else LOG_KAPPA[0]
         self.least = max(least, math.log(_LEAST) / (2 * self.precision.order) - math.log(span))
         # kappa^(2 nu) is part of rho.
         self.rhos = (LOG_RHO[0] - SMALLER * (self.precision.power - 1), LOG_RHO[1])

@@ -40,6 +40,7 @@ __all__ = [
     "Periphery",
     "approximate_all",
     "cap_for",
+    "crowded",
     "in_patches",
     "smoothed",
 ]
@@ -58,6 +59,8 @@ BENT = 3.0
 SHOWN = 0.8
 #: Places whose rows are held at a time.
 PART = 50_000
+#: Spans across nine tenths of the points, below which no control points can follow them.
+CROWDED = 4
 #: Control points a data point, and their bounds.
 A_POINT, FEWEST, MOST = 40, 1_600, 20_000
 
@@ -98,6 +101,23 @@ def in_patches(shape: tuple[int, int], core: Rectangle | None, space: TensorSpac
         inner = [x for x in edges if knots[0] < x < knots[-1]]
         rows.append(count + sum(space.degree + 1 - int((knots == x).sum()) for x in inner))
     return rows[0] * rows[1]
+
+
+def crowded(space: TensorSpace, plane: Rows) -> tuple[float, float] | None:
+    """Return the extent of nine tenths of the points and the longest span there, if they lie within a few spans.
+
+    Of an area far wider than its points no control points can follow them.
+    """
+    if len(plane) > CLOUD:
+        return None
+    low, high = np.quantile(plane[:], (0.05, 0.95), axis=0)
+    spans = []
+    for axis, knots in enumerate((space.knots_u, space.knots_v)):
+        breaks = np.unique(knots)
+        first, last = np.searchsorted(breaks, (low[axis], high[axis]), side="right")
+        spans.append(float(np.diff(breaks[max(first - 1, 0) : last + 1]).max()))
+    extent = float((high - low).max())
+    return (extent, max(spans)) if extent < CROWDED * max(spans) else None
 
 
 def smoothed(data: Data, space: TensorSpace, field: FieldChoice) -> Smoothed:
@@ -161,7 +181,7 @@ class Periphery:
 
     def fit(self, space: TensorSpace, start: Smoothed) -> PeripheryFit:
         """Approximate, and add knots where points stay outside the tolerance, as far as the cap allows."""
-        data, tolerance = self.data, self.settings.interior_tolerance
+        data, tolerance, base = self.data, self.settings.interior_tolerance, space
         coefficients = self._refitted(space, start) if self.refit else start.coefficients
         chased = self._chased
         if not chased and self.outer.all():
@@ -175,7 +195,7 @@ class Periphery:
             space, coefficients = self._narrowed(space, coefficients, plane[misfit > allowed])
         total, field = 0, coefficients
         if not chased or not (misfit > allowed).any():
-            notes = self._notes(self._beyond(misfit, allowed, limit), limit)
+            notes = self._notes(base, self._beyond(misfit, allowed, limit), limit)
             return PeripheryFit(space, coefficients, self._frozen(space), 0, limit, notes)
         while True:
             frozen = self._frozen(space)
@@ -188,7 +208,7 @@ class Periphery:
                 break
             space, field = multiply_knots(space, field, at_u, at_v)
         beyond = self._beyond(result.misfit, allowed, limit)
-        notes = self._notes(beyond, limit, bool((result.released & (beyond > 0)).any()))
+        notes = self._notes(base, beyond, limit, bool((result.released & (beyond > 0)).any()))
         return PeripheryFit(space, result.coefficients, frozen, total, limit, notes)
 
     def _unchanged(self, space: TensorSpace, coefficients: Floats) -> PeripheryFit:
@@ -196,7 +216,7 @@ class Periphery:
         misfit = _misfit(space, coefficients, self.data.plane, self.data.value)
         limit = self._limit(misfit)
         misfit[misfit <= self.settings.interior_tolerance] = 0.0
-        return PeripheryFit(space, coefficients, self._frozen(space), 0, limit, self._notes(misfit, limit))
+        return PeripheryFit(space, coefficients, self._frozen(space), 0, limit, self._notes(space, misfit, limit))
 
     @property
     def _chased(self) -> bool:
@@ -314,10 +334,10 @@ class Periphery:
                 new[axis][middle] = 1
         return new
 
-    def _notes(self, beyond: Floats, limit: float, released: bool = False) -> tuple[Message, ...]:
+    def _notes(self, base: TensorSpace, beyond: Floats, limit: float, released: bool = False) -> tuple[Message, ...]:
         if limit > self.settings.interior_tolerance and not (beyond > limit).any():
             return (*self._coarse_notes(), *self._noise_notes(beyond))
-        return (*self._coarse_notes(), *self._bent_notes(), *self._excess_notes(beyond, released))
+        return (*self._coarse_notes(), *self._bent_notes(), *self._excess_notes(base, beyond, released))
 
     def _coarse_notes(self) -> tuple[Message, ...]:
         """Count the points that are held to their own accuracy only."""
@@ -367,7 +387,7 @@ class Periphery:
         )
         return (note.with_severity("warning"),)
 
-    def _excess_notes(self, excess: Floats, released: bool) -> tuple[Message, ...]:
+    def _excess_notes(self, base: TensorSpace, excess: Floats, released: bool) -> tuple[Message, ...]:
         count = int((excess > 0).sum())
         if not count:
             return ()
@@ -378,7 +398,17 @@ class Periphery:
                 "neighbours nearer to each other than the knots contradict each other there (strict meets them where "
                 "knots allow, and the surface swings between them)",
             )
-        if self.field.contradictory:
+        few = crowded(base, self.data.plane) if self.field.contradictory or released else None
+        if few is not None:
+            reason = message(
+                "fitting.area-far-wider",
+                "nine tenths of the points lie within {extent:.0f} m, of a study area so wide that its control points "
+                "stand {span:.0f} m apart; draw the area around the points, or check the points farthest from the "
+                "others",
+                extent=few[0] * self.data.unit,
+                span=few[1] * self.data.unit,
+            )
+        elif self.field.contradictory:
             noise = self.field.noise
             reason = message(
                 "fitting.data-contradict",

@@ -30,6 +30,9 @@ EVEN, CLOSE, LESS_EVEN, SKETCH, FIRST_LEVEL, LAST_LEVEL = 0.5, 0.25, 0.35, 500, 
 SKETCHED = 10_000
 #: Another level must raise the restricted likelihood by this much, -2 log of it.
 GAIN = 10.0
+#: The same for each point where the field is smoother than the splines: of its form, shorter spans are always a better
+#: approximation, but twice as many control points are to lower the noise by a fiftieth.
+WORTH = 0.04
 #: Control points of a coarser level, as a share of those of the last, and the least of any.
 COARSER, COARSEST = 0.75, 75
 #: How many times the noise of the level before a coarser one may find.
@@ -101,7 +104,8 @@ def choose_field(data: Data, settings: FitSettings, most: int, sketched: Sequenc
             # A field smoother than the splines needs shorter spans only where those of the sketch still cut it.
             settled = known and known[0].noise < LOUDER * first.field.noise
             closest = CLOSE if first.field.alpha <= degree else EVEN if settled else LESS_EVEN
-            best = _shortened(first, _finer(data.area, degree, limit, closest), on)
+            gain = GAIN if first.field.alpha <= degree else max(GAIN, WORTH * len(data.plane))
+            best = _shortened(first, _finer(data.area, degree, limit, closest), on, gain)
             if best is not first:
                 # Spaces no finer than the first one have been evaluated already.
                 between = (one for one in _coarser(data.area, degree, best.space.size) if one.size > first.space.size)
@@ -139,13 +143,13 @@ def _lengthened(best: Level, coarser: Iterable[TensorSpace], on: Search) -> Leve
     return simplest if simplest.value < best.value - GAIN else best
 
 
-def _shortened(best: Level, finer: Iterable[TensorSpace], on: Search) -> Level:
+def _shortened(best: Level, finer: Iterable[TensorSpace], on: Search, gain: float) -> Level:
     """Go to shorter spans while the likelihood gains by it."""
     for space in finer:
         if space.size < 1.3 * best.space.size:
             continue
         level = on(space, [best.field])[0]
-        if level.value > best.value - GAIN:
+        if level.value > best.value - gain:
             break
         best = level
     return best
@@ -153,11 +157,11 @@ def _shortened(best: Level, finer: Iterable[TensorSpace], on: Search) -> Level:
 
 def _finer(area: Rectangle, degree: int, limit: int, closest: float) -> Iterator[TensorSpace]:
     """Yield spaces of ever shorter spans: down to those of evenly spaced points, then that of the shortest."""
-    count = FIRST_LEVEL
-    while 2 * count <= limit:
+    count, last = FIRST_LEVEL, even_space(area, closest, degree, limit)
+    while 2 * count <= min(limit, last.size):
         count *= 2
         yield even_space(area, EVEN, degree, count)
-    yield even_space(area, closest, degree, limit)
+    yield last
 
 
 def _coarser(area: Rectangle, degree: int, size: int) -> Iterator[TensorSpace]:

@@ -111,3 +111,21 @@ def test_data_that_contradict_each_other_are_not_chased():
     assert rms(surface.elevation(*plan.T) - plane) < 6.0
     strict = fit_horizon(points, FitSettings(strict=True))
     assert strict.accuracy.sigma < 0.1 * surface.accuracy.sigma
+
+
+def test_points_in_an_area_far_wider_than_they_are_do_not_contradict_each_other():
+    rng, corner = np.random.default_rng(0), np.array([EASTING, NORTHING])
+    xy, unit_square = rng.uniform(0, 100, (60, 2)), np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    points = PointSet(np.column_stack([xy + corner, 5 * np.sin(xy[:, 0] / 20) + 3 * np.cos(xy[:, 1] / 30)]))
+    near, far = (
+        fit_horizon(points, FitSettings(), corner - margin + (100 + 2 * margin) * unit_square)
+        for margin in (20.0, 5_000.0)
+    )
+    assert near.accuracy.passed
+    assert not far.accuracy.passed
+    reason = with_code(far.accuracy.notes, "fitting.tolerance-not-met").params["reason"]
+    assert reason.code == "fitting.area-far-wider"
+    assert reason.params["extent"] == pytest.approx(90, rel=0.1)
+    codes = [note.code for note in far.accuracy.notes]
+    assert "fitting.sigma-of-wide-area" in codes
+    assert "fitting.sigma-of-contradiction" not in codes

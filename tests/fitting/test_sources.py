@@ -29,7 +29,7 @@ def error(surface, height):
 
 
 @pytest.mark.parametrize(
-    ("seed", "coarse", "share"), [(1, 4.0, 0.8), (2, 4.0, 0.8), (3, 1.0, 0.8), (4, 1.0, 0.96), (8, 1.0, 0.8)]
+    ("seed", "coarse", "share"), [(1, 4.0, 0.8), (2, 4.0, 0.8), (3, 1.0, 0.85), (4, 1.0, 0.96), (8, 1.0, 0.8)]
 )
 def test_noise_of_picks_is_found_and_as_good_as_told(seed, coarse, share):
     xyz, kind, sd, height = two_sources(seed, coarse)
