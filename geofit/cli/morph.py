@@ -133,6 +133,8 @@ def _print(run: MorphRun) -> None:
     ]  # fmt: skip
     head = ("date" if run.morph.dates else "tau", "volume, m3", "area, m2", "Euler", "parts", "gain, m3", "loss, m3")
     print_table((*head, "drift, m3"), rows)
+    for note in run.morph.notes:
+        say(note)
     for change in run.morph.changes:
         say(
             f"Gain {change.gain + 0.0:.6g} m3, loss {change.loss + 0.0:.6g} m3, net {change.net + 0.0:.6g} m3"

@@ -84,8 +84,7 @@ def change(morph: Morph, k: int) -> Change:
     """Return the change over leg k of a metamorphosis."""
     leg = morph.legs[k]
     spread = _thickness_sd(morph, k)
-    more, cell = leg.changed_fractions, leg.lattice.spacing**3
-    gain, loss = float(more[more > 0].sum(dtype=float)) * cell, float(-more[more < 0].sum(dtype=float)) * cell
+    gain, loss = leg.gain_and_loss(1.0)
     parts = [*_parts(leg, "gain", spread, morph.origin), *_parts(leg, "loss", spread, morph.origin)]
     areas = {kind: sum(part.area for part in parts if part.kind == kind) for kind in ("gain", "loss")}
     years = 1.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -54,12 +54,15 @@ class End:
         Box that contains it.
     name : str
         Its name.
+    turned : bool
+        Whether it is a mesh whose normals pointed inwards: its triangles are reversed, those of ``given`` too.
     """
 
     given: Any
     shape: Field | TriangleMesh
     bounds: tuple[Floats, Floats]
     name: str
+    turned: bool = False
 
 
 def ends_of(bodies: Sequence[Any], names: Sequence[str] | None = None) -> tuple[tuple[End, ...], Floats]:
@@ -74,12 +77,16 @@ def ends_of(bodies: Sequence[Any], names: Sequence[str] | None = None) -> tuple[
     """
     if names is None:
         names = [str(getattr(body, "name", "") or chr(ord("A") + k)) for k, body in enumerate(bodies)]
-    raw = [_mesh_of(body) for body in bodies]
+    raw, given = [_mesh_of(body) for body in bodies], list(bodies)
     for mesh, name in zip(raw, names, strict=True):
         if isinstance(mesh, TriangleMesh):
             require_closed(mesh, name)
+    turned = [isinstance(one, TriangleMesh) and one.volume < 0 for one in raw]
+    for k in np.flatnonzero(turned).tolist():
+        raw[k] = given[k] = TriangleMesh(raw[k].vertices, raw[k].triangles[:, ::-1])
     origin = _origin(raw)
-    return tuple(_end(body, one, name, origin) for body, one, name in zip(bodies, raw, names, strict=True)), origin
+    ends = (_end(*parts, origin) for parts in zip(given, raw, names, strict=True))
+    return tuple(replace(end, turned=one) for end, one in zip(ends, turned, strict=True)), origin
 
 
 def _mesh_of(body: Any) -> Any:

@@ -143,9 +143,12 @@ class Leg:
         """Return what the frame at share s has that A has not, and the reverse, m3."""
         from geofit.morphing.look_loops import cell_fractions
 
-        more = cell_fractions(samples_at(self.path, s), self.lattice.spacing) - self._first_fractions
+        # The later survey itself ends the way, with the parts that no front reaches.
+        more = self.changed_fractions
+        if s < 1:
+            more = cell_fractions(samples_at(self.path, s), self.lattice.spacing) - self._first_fractions
         cell = self.lattice.spacing**3
-        return float(more[more > 0].sum(dtype=float)) * cell, float(-more[more < 0].sum(dtype=float)) * cell
+        return float(more[more > 0].sum(dtype=float)) * cell, float(0.0 - more[more < 0].sum(dtype=float)) * cell
 
     @cached_property
     def _first_fractions(self) -> NDArray[np.float32]:

@@ -121,10 +121,24 @@ def crossing_shares(first: NDArray[np.float32], last: NDArray[np.float32]) -> tu
 
 
 @njit(cache=True)
+def _passed(f: NDArray[np.floating], i: int, j: int, k: int) -> bool:
+    """Return whether a node and the 26 around it are on both sides: else no plane cuts the cube about the node."""
+    nx, ny, nz = f.shape
+    inside = f[i, j, k] < 0
+    for a in range(max(i - 1, 0), min(i + 2, nx)):
+        for b in range(max(j - 1, 0), min(j + 2, ny)):
+            for c in range(max(k - 1, 0), min(k + 2, nz)):
+                if (f[a, b, c] < 0) != inside:
+                    return True
+    return False
+
+
+@njit(cache=True)
 def cell_fractions(f: NDArray[np.floating], h: float) -> NDArray[np.float32]:
     """Return the part of the cube about each node that a plane at the node's distance leaves inside.
 
-    The distance is the sample over its slope: layers thinner than a spacing keep their volume.
+    The distance is the sample over its slope: layers thinner than a spacing keep their volume. Only nodes next to the
+    surface have one: elsewhere samples may jump from a bound of the distance to the distance.
     """
     nx, ny, nz = f.shape
     part = np.zeros((nx, ny, nz), np.float32)
@@ -132,6 +146,9 @@ def cell_fractions(f: NDArray[np.floating], h: float) -> NDArray[np.float32]:
         for j in range(ny):
             for k in range(nz):
                 value = f[i, j, k]
+                if not _passed(f, i, j, k):
+                    part[i, j, k] = 1.0 if value < 0 else 0.0
+                    continue
                 gx = (f[min(i + 1, nx - 1), j, k] - f[max(i - 1, 0), j, k]) / 2
                 gy = (f[i, min(j + 1, ny - 1), k] - f[i, max(j - 1, 0), k]) / 2
                 gz = (f[i, j, min(k + 1, nz - 1)] - f[i, j, max(k - 1, 0)]) / 2

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import message
+from geofit.data.messages import Message, message, plural_message
 from geofit.data.progress import Progress
 from geofit.implicit.grid import spline_grid
 from geofit.implicit.lattice import Lattice
@@ -122,7 +122,12 @@ class Morph:
         """Return n equal steps of tau from 0 to 1."""
         if n < 2:
             raise SettingsError(
-                message("morphing.too-few-frames", "{count} frames cannot hold both ends: ask for 2 or more.", count=n)
+                plural_message(
+                    "morphing.too-few-frames",
+                    "{count} frame is asked for, but both ends are frames: ask for 2 or more.",
+                    "{count} frames are asked for, but both ends are frames: ask for 2 or more.",
+                    count=n,
+                )
             )
         return np.linspace(0.0, 1.0, n)
 
@@ -155,6 +160,13 @@ class Morph:
         from geofit.morphing.table import events
 
         return events(self)
+
+    @cached_property
+    def notes(self) -> tuple[Message, ...]:
+        """What a reader of the volumes must know: meshes that were turned, cells too coarse for a part."""
+        from geofit.morphing.notes import notes
+
+        return notes(self)
 
     @cached_property
     def changes(self) -> tuple[Change, ...]:

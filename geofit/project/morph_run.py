@@ -57,6 +57,7 @@ class MorphRun:
             "pace": m.pace,
             "spacing": m.lattice.spacing,
             "note": str(GEOMETRY_ONLY),
+            "notes": [note.as_data() for note in m.notes],
             "unreached": [_part(part) for part in m.unreached],
             "vanishing": [_part(part) for part in m.vanishing],
             "events": [plain(asdict(event) | {"date": _day(event.date)}) for event in m.events],

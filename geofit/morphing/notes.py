@@ -1,0 +1,83 @@
+"""What a reader of a metamorphosis must know: meshes that were turned, cells too coarse for what they measure."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geofit.data.messages import Message, message
+
+if TYPE_CHECKING:
+    from geofit.implicit.mesh import TriangleMesh
+    from geofit.morphing.sequence import Morph
+
+__all__ = ["notes"]
+
+#: Spacings across a part below which its volume by the lattice is off by more than a few per cent.
+ACROSS = 6.0
+#: Parts smaller than this share of their body cannot change its volume.
+SPECK = 0.01
+#: Gain less loss may differ by this share of both from the difference of the volumes.
+AGREES = 0.02
+#: And by this share of the larger body: bodies that are equal differ by rounding.
+ROUNDING = 1e-5
+
+
+def notes(morph: Morph) -> tuple[Message, ...]:
+    """Return the notes of a metamorphosis."""
+    found = [_turned(end.name) for end in morph.ends if end.turned]
+    bodies = [morph.legs[0].start, *(leg.end for leg in morph.legs)]
+    for end, body in zip(morph.ends, bodies, strict=True):
+        if (across := _thinnest(body.mesh)) < ACROSS * body.lattice.spacing:
+            found.append(_coarse(end.name, across, body.lattice.spacing))
+    for leg, change, (first, last) in zip(morph.legs, morph.changes, pairwise(morph.ends), strict=True):
+        before, after = leg.start.mesh.volume, leg.end.mesh.volume
+        off = abs(change.net - (after - before))
+        if off > AGREES * (change.gain + change.loss) + ROUNDING * max(before, after):
+            found.append(
+                message(
+                    "morphing.volumes-disagree",
+                    "From '{first}' to '{last}', gain less loss is {net:.6g} m3 on a lattice of {spacing:.3g} m, but "
+                    "the volumes differ by {wanted:.6g} m3. Use a smaller spacing; if this remains, parts of a mesh "
+                    "overlap or are inside out: repair it.",
+                    first=first.name,
+                    last=last.name,
+                    net=change.net,
+                    spacing=leg.lattice.spacing,
+                    wanted=after - before,
+                ).with_severity("warning")
+            )
+    return tuple(found)
+
+
+def _turned(name: str) -> Message:
+    return message(
+        "morphing.mesh-turned",
+        "The normals of the mesh '{name}' point inwards: its triangles are reversed.",
+        name=name,
+    ).with_severity("warning")
+
+
+def _coarse(name: str, across: float, spacing: float) -> Message:
+    return message(
+        "morphing.cells-too-coarse",
+        "A part of '{name}' is about {across:.3g} m thick, {count:.1f} spacings of {spacing:.3g} m: its volume and "
+        "shape are coarse. Use a spacing of {least:.2g} m or less; if parts lie far from each other, treat them one "
+        "by one.",
+        name=name,
+        across=across,
+        count=across / spacing,
+        spacing=spacing,
+        least=across / ACROSS,
+    ).with_severity("warning")
+
+
+def _thinnest(mesh: TriangleMesh) -> float:
+    """Return the least thickness of the parts of a mesh, 6 V / A: the diameter of a ball, the edge of a cube."""
+    part = mesh.component_of
+    cones = ((mesh.corners.mean(axis=1) - mesh.vertices.mean(axis=0)) * mesh.area_vectors).sum(axis=1) / 3
+    volume, area = np.abs(np.bincount(part, cones)), np.bincount(part, mesh.areas)
+    large = volume > SPECK * volume.max()
+    return float((6 * volume[large] / area[large]).min(initial=np.inf))
