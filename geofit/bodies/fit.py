@@ -118,7 +118,7 @@ def fit_field(data: BodyData, settings: BodySettings) -> Fitted:
     for attempt in range(ROUNDS + 1):
         fit = _solve(prepared, outside, region, frame, settings)
         field = BodyField(fit[0], frame, lower, upper)
-        survey, strays = _survey(field, prepared, frame.origin)
+        survey, strays, buried = _survey(field, prepared, frame.origin)
         unsupported = len(strays)
         if not settings.closed or not unsupported or attempt == ROUNDS:
             break
@@ -126,7 +126,17 @@ def fit_field(data: BodyData, settings: BodySettings) -> Fitted:
     interpolant, system, active, conditions, rounds = fit
     field = BodyField(interpolant, frame, lower, upper, field.reaches())
     return Fitted(
-        field, region, prepared, survey, system, active, conditions, rounds, time.perf_counter() - start, unsupported
+        field,
+        region,
+        prepared,
+        survey,
+        system,
+        active,
+        conditions,
+        rounds,
+        time.perf_counter() - start,
+        unsupported,
+        buried,
     )
 
 
@@ -165,8 +175,11 @@ def _solve(
     return fit.rbf, fit.system, len(fit.active), conditions, fit.rounds
 
 
-def _survey(field: BodyField, prepared: Prepared, origin: Floats) -> tuple[BodyRaster, Floats]:
-    """Look at the body on a raster; also return the deepest place (map coordinates) of each part without data."""
+def _survey(field: BodyField, prepared: Prepared, origin: Floats) -> tuple[BodyRaster, Floats, float]:
+    """Look at the body on a raster.
+
+    Also return the deepest place (map coordinates) of each part without data, and the share of contacts on cavities.
+    """
     from scipy.ndimage import label, minimum_position
 
     from geofit.implicit.lattice import Lattice, sample
@@ -188,12 +201,30 @@ def _survey(field: BodyField, prepared: Prepared, origin: Floats) -> tuple[BodyR
     parts, count = label(inside, np.ones((3, 3, 3)))
     data = np.concatenate([prepared.contacts, prepared.inside]) - origin
     first = np.floor((data - lattice.origin) / lattice.spacing).astype(int)
-    supported = {0}
-    for corner in np.ndindex(2, 2, 2):
-        node = np.clip(first + corner, 0, np.array(lattice.shape) - 1)
-        supported.update(np.unique(parts[tuple(node.T)]).tolist())
+    corners = [tuple(np.clip(first + corner, 0, np.array(lattice.shape) - 1).T) for corner in np.ndindex(2, 2, 2)]
+    supported = {0}.union(*(np.unique(parts[at]).tolist() for at in corners))
+    buried = _buried(inside, [tuple(axis[: len(prepared.contacts)] for axis in at) for at in corners])
     alone = [k for k in range(1, count + 1) if k not in supported]
     if not alone:
-        return survey, np.zeros((0, 3))
+        return survey, np.zeros((0, 3)), buried
     deepest = np.array(minimum_position(values, parts, alone))
-    return survey, np.asarray(lattice.origin + lattice.spacing * deepest + origin)
+    return survey, np.asarray(lattice.origin + lattice.spacing * deepest + origin), buried
+
+
+def _buried(inside: NDArray[np.bool_], corners: Sequence[tuple[NDArray[np.int64], ...]]) -> float:
+    """Return the share of contacts next to a cavity, not next to the ground around the body, by the nodes about each.
+
+    Ground around the body reaches the border of the raster. Contacts without a node of either do not count.
+    """
+    from scipy.ndimage import label
+
+    parts, count = label(~inside, np.ones((3, 3, 3)))
+    around = np.zeros(count + 1, bool)
+    for axis in range(3):
+        for end in (0, -1):
+            around[np.unique(np.take(parts, end, axis))] = True
+    around[0] = False
+    beside = np.any([around[parts[at]] for at in corners], axis=0)
+    cavity = np.any([(parts[at] > 0) & ~around[parts[at]] for at in corners], axis=0)
+    shown = int((beside | cavity).sum())
+    return float((cavity & ~beside).sum() / shown) if shown else 0.0

@@ -36,7 +36,8 @@ class Fitted:
     """A fitted field and what it came from.
 
     ``survey`` is a look at the body on a raster, ``system`` the factorised system of contacts and active samples (None
-    where parts were blended), ``active`` the number of active samples, ``conditions`` all that the field satisfies.
+    where parts were blended), ``active`` the number of active samples, ``conditions`` all that the field satisfies,
+    ``buried`` the share of contacts that lie on cavities of the body.
     """
 
     field: BodyField
@@ -49,3 +50,4 @@ class Fitted:
     rounds: int
     seconds: float
     unsupported: int
+    buried: float = 0.0

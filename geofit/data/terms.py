@@ -189,6 +189,7 @@ TERMS: frozenset[str] = frozenset(
         "not used",
         "nurbs",
         "order",
+        "orientation",
         "orientations",
         "oscillation",
         "other methods",
