@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.bodies.data import BodyData
+from geofit.bodies.data import BodyData, BodyIssue
 from geofit.data.errors import PointsError, SettingsError
 from geofit.data.messages import message
 from geofit.geometry.clip import inside
@@ -26,6 +26,8 @@ STEPS = 10
 FEWEST = 8
 #: Outside samples go this far beyond the outlines of a section, in sides of their box.
 MARGIN = 0.5
+#: Outlines whose corners agree within this share of their size are one line drawn twice.
+SAME = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +102,7 @@ class SectionPlane:
 
 
 def section_planes(outlines: Sequence[Outline]) -> tuple[SectionPlane, ...]:
-    """Return the planes of sections, in the order in which their names occur.
+    """Return the planes of sections, in the order in which their names occur; repeated outlines count once.
 
     Raises
     ------
@@ -108,6 +110,7 @@ def section_planes(outlines: Sequence[Outline]) -> tuple[SectionPlane, ...]:
         If the outlines of a section do not lie on one plane, or bound no area.
     """
     planes = []
+    outlines = _distinct(outlines)[0]
     for name in dict.fromkeys(outline.section for outline in outlines):
         rings = [outline.xyz for outline in outlines if outline.section == name]
         corners = np.concatenate(rings)
@@ -205,7 +208,47 @@ def from_outlines(outlines: Sequence[Outline], step: float | None = None, *, mar
         hole=names[0],
         inside_hole=names[1],
         outside_hole=names[2],
+        issues=tuple(_repeated(outline) for outline in _distinct(outlines)[1]),
     )
+
+
+def _distinct(outlines: Sequence[Outline]) -> tuple[list[Outline], list[Outline]]:
+    """Return the outlines without those that repeat an earlier one, and the latter.
+
+    Within itself a repeated outline would be a hole, with the body between the two lines.
+    """
+    kept: list[Outline] = []
+    repeated: list[Outline] = []
+    middles, counts = np.array([outline.xyz.mean(axis=0) for outline in outlines]), np.zeros(len(outlines), int)
+    for k, outline in enumerate(outlines):
+        size = float(np.linalg.norm(np.ptp(outline.xyz, axis=0)))
+        near = (counts[:k] == len(outline.xyz)) & (np.abs(middles[:k] - middles[k]).max(axis=1) <= SAME * size)
+        if any(_same(outlines[m].xyz, outline.xyz, SAME * size) for m in np.flatnonzero(near)):
+            repeated.append(outline)
+        else:
+            counts[k] = len(outline.xyz)
+            kept.append(outline)
+    return kept, repeated
+
+
+def _same(ring: Floats, other: Floats, tolerance: float) -> bool:
+    """Return whether two rings (k, 3) have the same corners in one order, from any corner and in either direction."""
+    for turned in (other, other[::-1]):
+        first = int(np.argmin(((turned - ring[0]) ** 2).sum(axis=1)))
+        if np.abs(np.roll(turned, -first, axis=0) - ring).max() <= tolerance:
+            return True
+    return False
+
+
+def _repeated(outline: Outline) -> BodyIssue:
+    x, y, z = outline.xyz.mean(axis=0).tolist()
+    text = message(
+        "bodies.outline-repeated",
+        "An outline of section '{section}' with {corners} corners repeats another one: it counts once",
+        section=outline.section,
+        corners=len(outline.xyz),
+    )
+    return BodyIssue("coincident", text, (x, y, z))
 
 
 def _area(ring: Floats) -> float:

@@ -168,3 +168,30 @@ def test_corners_of_an_outline_stay_and_their_edges_are_straight() -> None:
     edges = np.stack([np.abs(x), np.abs(40 - x), np.abs(z), np.abs(40 + np.minimum(x, 40 - x) / 20 - z)])
     assert edges.min(axis=0).max() < 0.3
     assert edges[:3].min(axis=0)[z < 39].max() < 1e-9
+
+
+def test_an_outline_that_is_drawn_twice_counts_once_and_is_listed() -> None:
+    """Within itself it would be a hole: of six outlines of an ellipsoid, one repeated, a third of the volume went."""
+    places = np.array([-50.0, -30, -10, 10, 30, 50])
+    outlines = [lens(f"s{k}", x, np.eye(3)) for k, x in enumerate(places)]
+    turned = np.roll(outlines[2].xyz[::-1], 17, axis=0) + 0.001
+    twice = [*outlines, Outline("s2", turned), Outline("again", outlines[4].xyz)]
+    data = from_outlines(twice)
+    assert [(issue.kind, issue.text.code, issue.text.params["section"]) for issue in data.issues] == [
+        ("coincident", "bodies.outline-repeated", "s2"),
+        ("coincident", "bodies.outline-repeated", "again"),
+    ]
+    once = from_outlines(outlines)
+    np.testing.assert_array_equal(data.contacts, once.contacts)
+    np.testing.assert_array_equal(data.outside, once.outside)
+    assert not once.issues
+    assert [len(plane.rings) for plane in section_planes(twice)] == [1] * 6
+    assert section_questions(twice) == section_questions(outlines) == ()
+
+
+def test_an_outline_that_differs_by_one_corner_is_no_repetition() -> None:
+    square = np.array([[0, 0, 0], [40, 0, 0], [40, 0, 40], [0, 0, 40]], float)
+    other = square.copy()
+    other[0] += [1.0, 0, 1.0]
+    (plane,) = section_planes([Outline("a", square), Outline("a", other)])
+    assert len(plane.rings) == 2
