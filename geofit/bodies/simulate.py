@@ -41,7 +41,7 @@ class BodyVolumes:
 
     ``p10``, ``p50`` and ``p90``: 10, 50 and 90 % of the realizations are smaller. ``best`` is the volume of the fitted
     body and ``error`` its numerical error (:attr:`geofit.BodyFit.size`), ``mean`` and ``sd`` are over the realizations,
-    ``values`` (n,) are their volumes.
+    ``values`` (n,) are their volumes. Their spread contains the numerical error as one more standard deviation.
     """
 
     p10: float
@@ -134,9 +134,20 @@ def volumes_of(best: float, change: Floats, error: float = 0.0) -> BodyVolumes:
     middle = float(np.median(values))
     if middle > 0:
         values *= best / middle
+    values = np.maximum(_with_error(values, best, error), 0.0)
     p10, p50, p90 = np.quantile(values, [0.1, 0.5, 0.9]).tolist()
     values.setflags(write=False)
     return BodyVolumes(p10, p50, p90, best, float(values.mean()), float(values.std(ddof=1)), values, error)
+
+
+def _with_error(values: Floats, best: float, error: float) -> Floats:
+    """Return volumes (n,) spread about the best one so that their variance has that of its numerical error, too."""
+    from scipy.special import ndtri
+
+    sd = float(values.std(ddof=1))
+    if sd > 0:
+        return np.asarray(best + (values - best) * np.hypot(1.0, error / sd))
+    return np.asarray(best + error * ndtri((np.arange(len(values)) + 0.5) / len(values)))
 
 
 def _nodes(body: BodyFit) -> tuple[Floats, NDArray[np.int64], float]:

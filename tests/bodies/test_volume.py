@@ -71,5 +71,19 @@ def test_the_volume_of_a_fitted_body_does_not_depend_on_the_cells() -> None:
 
 
 def test_volumes_of_a_body_that_was_not_simulated() -> None:
-    alone = volumes_of(8.0, np.zeros(5), 0.5)
-    assert (alone.p10, alone.p50, alone.p90, alone.best, alone.sd, alone.error) == (8.0, 8.0, 8.0, 8.0, 0.0, 0.5)
+    alone = volumes_of(8.0, np.zeros(5))
+    assert (alone.p10, alone.p50, alone.p90, alone.best, alone.sd, alone.error) == (8.0, 8.0, 8.0, 8.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("spread", [0.0, 0.01, 3.0])
+def test_the_spread_of_a_volume_contains_its_numerical_error(spread: float) -> None:
+    """Simulations of a body that is known to 400 m3 and measured to 30,000 had a spread of 400 m3."""
+    drawn = np.random.default_rng(2).normal(0, 1, 4001)
+    drawn = spread * (drawn - np.median(drawn)) / drawn.std(ddof=1)
+    volumes = volumes_of(800.0, drawn, 4.0)
+    wanted = float(np.hypot(spread, 4.0))
+    assert (volumes.best, volumes.error) == (800.0, 4.0)
+    assert volumes.p50 == pytest.approx(800.0, abs=1e-9)
+    assert volumes.sd == pytest.approx(wanted, rel=0.01)
+    assert volumes.p90 - volumes.p10 == pytest.approx(2 * 1.2816 * wanted, rel=0.05)
+    assert volumes_of(800.0, drawn).sd == pytest.approx(spread, abs=1e-9)
