@@ -38,8 +38,9 @@ from geofit.pores.volume import RockVolume, VolumeError
 if TYPE_CHECKING:
     from geofit.cad.solid_read_back import SolidReadBack
     from geofit.cad.step_origin import StepFields
+    from geofit.pores.sliced import SlicedVolume
 
-__all__ = ["Construction", "ContactField", "PoreSurface", "pore_surface"]
+__all__ = ["Construction", "ContactField", "PoreSurface", "pore_surface", "require_rock"]
 
 Floats = NDArray[np.float64]
 Construction = Literal["contact", "blend"]
@@ -305,6 +306,8 @@ def pore_surface(
         )
     if not kappa > 0:
         raise VolumeError(message("pores.kappa-not-positive", "kappa={kappa} is not positive.", kappa=kappa))
+    if construction == "contact":
+        require_rock(volume)
     if network is None:
         network = pore_network(volume)
     if network.pore_of is None or network.pore_of.shape != volume.shape:
@@ -316,19 +319,30 @@ def pore_surface(
                 shape=volume.shape,
             )
         )
-    if construction == "contact" and volume.pore.all():
-        raise VolumeError(
-            message(
-                "pores.no-rock-to-touch",
-                "The volume has no rock voxel, so no ball touches rock. "
-                "Give construction='blend', or another pore label.",
-            )
-        )
     tell(progress, "contacts", 0.0)
     pore = network.pore_of > 0
     part = RockVolume(pore, pore=True, voxel=volume.voxel)
     body: Field = _contact_field(part) if construction == "contact" else _blended(part, kappa)
     return PoreSurface(body, volume.shape, volume.voxel, construction)
+
+
+def require_rock(volume: RockVolume | SlicedVolume) -> None:
+    """Refuse a volume in which all voxels are pore: nothing bounds its pores, throats or flow.
+
+    Raises
+    ------
+    VolumeError
+        If there is no rock voxel.
+    """
+    if volume.porosity == 1:
+        raise VolumeError(
+            message(
+                "pores.no-rock",
+                "All voxels of the volume, shape {shape}, are pore: nothing bounds the pores. Give the label or the "
+                "threshold of the pores only.",
+                shape=volume.shape,
+            )
+        )
 
 
 def _contact_field(volume: RockVolume) -> ContactField:

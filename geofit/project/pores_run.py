@@ -84,6 +84,8 @@ def run_pores(volume: RockVolume | SlicedVolume, out: Path, name: str, progress:
 
     Raises
     ------
+    VolumeError
+        If all voxels are pore.
     InputError
         If a file cannot be written.
     """
@@ -91,10 +93,11 @@ def run_pores(volume: RockVolume | SlicedVolume, out: Path, name: str, progress:
     from geofit.pores.balls import maximal_balls
     from geofit.pores.extraction import pore_network
     from geofit.pores.permeability import network_permeability
-    from geofit.pores.surface import pore_surface
+    from geofit.pores.surface import pore_surface, require_rock
     from geofit.pores.table import before_after
     from geofit.pores.volume import RockVolume
 
+    require_rock(volume)
     stem = folder_for(out) / file_stems([name])[name]
     balls = None
     if volume.cubic or isinstance(volume, RockVolume):

@@ -20,6 +20,8 @@ from geofit.io.export.network import (
 )
 from geofit.io.volumes import read_volume
 from geofit.pores import RockVolume, VolumeError, pore_network
+from geofit.project.pores_run import run_pores
+from tests.refusals import refused
 
 ARRAY = (np.random.default_rng(0).random((4, 5, 6)) < 0.3).astype(np.uint8)
 
@@ -129,3 +131,11 @@ def test_other_files(network, tmp_path):
     read = pyvista.read(tmp_path / "a.vtp")
     assert (read.n_points, read.n_lines) == (8, 12)
     assert not list(tmp_path.glob("*.part*"))
+
+
+def test_a_volume_of_pore_only_is_refused_before_any_computation(tmp_path, recwarn):
+    volume = RockVolume(np.zeros((6, 7, 8), np.uint8), pore=0, voxel=1.0)
+    with refused(VolumeError, "pores.no-rock", shape=(6, 7, 8)):
+        run_pores(volume, tmp_path / "out", "all")
+    assert not (tmp_path / "out").exists()
+    assert not recwarn.list
