@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from geofit.bodies.outlines import FLAT, Outline
 from geofit.data.errors import InputError
-from geofit.data.messages import Message, message
+from geofit.data.messages import Message, message, plural_message
 from geofit.data.site import ImportIssue
 from geofit.io.crs import WGS84, refuse_degrees
 from geofit.io.dxf import closed_lines
@@ -101,8 +101,9 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> Dr
     planes = _by_plane([one for one in rings if not layers or one[0] in layers], source, journal)
     if len(planes) < 2:
         raise InputError(
-            message(
+            plural_message(
                 "io.outlines-on-planes",
+                "The file has closed outlines on {count} plane; a body needs two or more sections",
                 "The file has closed outlines on {count} planes; a body needs two or more sections",
                 count=len(planes),
             ),

@@ -80,7 +80,7 @@ def cut_body(
     FitError
         If a surface does not reach all over the body, or folds over within one triangle.
     """
-    mesh = body.overview if spacing is None else body.local_mesh(spacing)
+    mesh = body.mesh_at(spacing)
     pieces: list[tuple[dict[str, Side], TriangleMesh]] = [({}, mesh)]
     origin = body.origin
     for name, surface in _named(surfaces):

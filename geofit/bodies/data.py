@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.columns import column, places, refuse_far
 from geofit.data.errors import FitError, PointsError
-from geofit.data.messages import Message, Untranslated, message
+from geofit.data.messages import Message, Untranslated, message, plural_message
 
 __all__ = ["BodyData", "BodyIssue", "Prepared", "prepare"]
 
@@ -317,12 +317,13 @@ def _sides(
 def _require_body(data: BodyData, found: Prepared) -> None:
     oriented = np.isfinite(found.normals).all(axis=1).any()
     given = {"contacts": len(found.contacts), "inside": len(found.inside), "outside": len(found.outside)}
+    _require_agreement(data, found, oriented=bool(oriented))
     if not len(found.inside) and not oriented:
         raise FitError(
             message(
                 "bodies.no-data-inside",
-                "Nothing lies inside the body ({contacts} contacts, {inside} inside and {outside} outside samples, no "
-                "normals). Give intervals in the body, inside samples, or contacts with normals.",
+                "Nothing lies inside the body (contacts: {contacts}, inside samples: {inside}, outside samples: "
+                "{outside}, no normals). Give intervals in the body, inside samples, or contacts with normals.",
                 **given,
             )
         )
@@ -361,6 +362,24 @@ def _require_body(data: BodyData, found: Prepared) -> None:
                 "All {count} data lie on one line, like those of one hole: they do not show how wide the body is. "
                 "Give at least two holes.",
                 count=len(everything),
+            )
+        )
+
+
+def _require_agreement(data: BodyData, found: Prepared, *, oriented: bool) -> None:
+    """Refuse samples that contradict each other so that none of a side that the body needs is left."""
+    count = sum(issue.kind == "contradiction" for issue in found.issues)
+    lost_inside = len(data.inside) and not found.inside_used.any() and not oriented
+    lost_outside = len(data.outside) and not found.outside_used.any() and not len(found.contacts)
+    if count and (lost_inside or lost_outside):
+        raise FitError(
+            plural_message(
+                "bodies.samples-all-contradict",
+                "{count} inside sample lies where an outside sample lies, so neither can be used, and the data do not "
+                "show which side is the body. Correct the intervals or samples.",
+                "{count} inside samples lie where outside samples lie, so neither can be used, and the data do not "
+                "show which side is the body. Correct the intervals or samples.",
+                count=count,
             )
         )
 

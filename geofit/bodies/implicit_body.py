@@ -143,13 +143,28 @@ class ImplicitBody:
         Raises
         ------
         SettingsError
-            If the spacing is not a length, or gives too many cells along a side.
+            If the spacing is not a length, gives too many cells along a side, or is so large that no cell shows the
+            body.
         """
-        mesh = self.overview if spacing is None else self.local_mesh(spacing)
+        mesh = self.mesh_at(spacing)
         return TriangleMesh(mesh.vertices + self.origin, mesh.triangles)
 
+    def mesh_at(self, spacing: float | None) -> TriangleMesh:
+        """Return the same mesh about the local origin; errors as :meth:`triangulate`."""
+        mesh = self.overview if spacing is None else self.local_mesh(spacing)
+        if not len(mesh.triangles) and len(self.overview.triangles):
+            raise SettingsError(
+                message(
+                    "bodies.spacing-misses-body",
+                    "Cells of {spacing} m do not show the body at all: give {most:.3g} m or less.",
+                    spacing=spacing,
+                    most=self.overview_spacing,
+                )
+            )
+        return mesh
+
     def local_mesh(self, spacing: float) -> TriangleMesh:
-        """Return the same mesh about the local origin, where coordinates keep all their digits."""
+        """Return triangles about the local origin, where coordinates keep all digits; none if cells miss the body."""
         lower, upper = self.extent
         longest = float((upper - lower).max())
         if not is_finite(spacing) or spacing <= 0 or longest / spacing > self.most_cells:

@@ -223,7 +223,7 @@ def _distinct(outlines: Sequence[Outline]) -> tuple[list[Outline], list[Outline]
     for k, outline in enumerate(outlines):
         size = float(np.linalg.norm(np.ptp(outline.xyz, axis=0)))
         near = (counts[:k] == len(outline.xyz)) & (np.abs(middles[:k] - middles[k]).max(axis=1) <= SAME * size)
-        if any(_same(outlines[m].xyz, outline.xyz, SAME * size) for m in np.flatnonzero(near)):
+        if any(_same(outlines[m].xyz, outline.xyz, SAME * size) for m in np.flatnonzero(near).tolist()):
             repeated.append(outline)
         else:
             counts[k] = len(outline.xyz)

@@ -91,7 +91,7 @@ def patched_surface(body: Patchable, tolerance: float | None = None) -> PatchedS
             message(
                 "bodies.body-cut-at-box",
                 "The body is cut at its box ({sides}): it has sharp edges, which smooth patches cannot follow. "
-                "Enlarge the box, or write triangles.",
+                "Enlarge the box; triangles keep the edges.",
                 sides=", ".join(cut),
             )
         )
@@ -177,7 +177,7 @@ def fit_part(
             message(
                 "bodies.part-without-layout",
                 "Layout of patches: no raster of at most {most} quadrilaterals has all branches, necks and holes of "
-                "{which}: it is thin or ragged against the cells of its triangles. Write triangles.",
+                "{which}: it is thin or ragged against the cells of its triangles, and only they follow it.",
                 most=part.most,
                 which=which,
             )
@@ -187,7 +187,7 @@ def fit_part(
             message(
                 "bodies.part-folds",
                 "Places of patches: in {folded} of {tried} layouts of {which} the surface turns back within a patch: "
-                "it has folds finer than that. Write triangles.",
+                "it has folds finer than that, which only triangles follow.",
                 folded=folded,
                 tried=tried,
                 which=which,
@@ -197,7 +197,7 @@ def fit_part(
         message(
             "bodies.patches-off-body",
             "Fit of patches: over {which} they do not stay within {tolerance:.3g} m and {angle:g} degrees at the seams "
-            "(best: {deviation:.3g} m, {turn:.3g} degrees). Allow a larger epsilon, or write triangles.",
+            "(best: {deviation:.3g} m, {turn:.3g} degrees). Allow a larger epsilon if patches are needed.",
             which=which,
             tolerance=tolerance,
             angle=ANGLE,

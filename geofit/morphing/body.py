@@ -136,10 +136,7 @@ class MorphBody(ImplicitBody):
 
     def triangulate(self, spacing: float | None = None) -> TriangleMesh:
         """Return closed triangles in map coordinates, by default those of :attr:`mesh`."""
-        if spacing is None:
-            return self.mesh
-        mesh = self.local_mesh(spacing)
-        return TriangleMesh(mesh.vertices + self.origin, mesh.triangles)
+        return self.mesh if spacing is None else super().triangulate(spacing)
 
     def write_step(self, path: str | PathLike[str], nurbs: bool = True, **stated: Unpack[StepFields]) -> SolidReadBack:
         """Write the body as a STEP AP242 solid; an end that was given as triangles stays triangles."""

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from bodies.planted import ORIGIN, SIZE, Truth, drilled, ellipsoid, pair, torus
 from geofit.bodies.body import BodyFit
@@ -139,6 +140,23 @@ def test_anisotropy_carries_farther_along_its_major_axis() -> None:
 def test_data_that_bound_no_body(data: BodyData, words: str) -> None:
     with pytest.raises(FitError, match=words):
         fit_body(data)
+
+
+@pytest.mark.parametrize("contacts", [0, 4])
+@pytest.mark.parametrize("count", [1, 2])
+def test_samples_of_both_sides_at_one_place_contradict_each_other(contacts: int, count: int) -> None:
+    places = 50 * np.eye(4)[:, :3]
+    both = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])[:count]
+    with refused(FitError, "bodies.samples-all-contradict", count=count):
+        fit_body(BodyData(places[:contacts], inside=both, outside=both))
+
+
+def test_cells_larger_than_the_body_are_refused() -> None:
+    body = fit_body(drilled(ellipsoid((0.6, 0.4, 0.3))[0], 3))
+    assert body.triangulate(20.0).is_closed
+    for mesh in (body.triangulate, lambda spacing: body.cut([], spacing)):
+        with refused(SettingsError, "bodies.spacing-misses-body", spacing=1e6, most=body.overview_spacing):
+            mesh(1e6)
 
 
 def test_a_box_away_from_the_data() -> None:

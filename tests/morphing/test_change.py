@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from refusals import with_code
 
 import geofit
 import geofit.implicit as implicit
 from geofit.morphing.leg import Mode
-from tests.refusals import with_code
 
 MODES: tuple[Mode, ...] = ("arrival", "blend")
 

@@ -6,6 +6,7 @@ import zipfile
 
 import numpy as np
 import pytest
+from refusals import refused
 from shapes import pack
 
 from geofit.data.errors import InputError
@@ -21,7 +22,6 @@ from geofit.io.export.network import (
 from geofit.io.volumes import read_volume
 from geofit.pores import RockVolume, VolumeError, pore_network
 from geofit.project.pores_run import run_pores
-from tests.refusals import refused
 
 ARRAY = (np.random.default_rng(0).random((4, 5, 6)) < 0.3).astype(np.uint8)
 
