@@ -75,7 +75,7 @@ def test_what_is_no_outline_is_listed(tmp_path):
 
 def test_one_plane_is_not_a_body(tmp_path):
     save(tmp_path / "a.dxf", [("S1", ring(0)), ("S2", ring(0, 3.0))])
-    with pytest.raises(InputError, match="1 planes"):
+    with pytest.raises(InputError, match="on 1 plane;"):
         read_outlines(tmp_path / "a.dxf")
 
 
