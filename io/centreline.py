@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from geofit.caves.shots import ShotList
-from geofit.caves.survey import Survey
+from geofit.caves.shots import ShotList, require_length
+from geofit.caves.survey import LONGEST, Survey
 from geofit.data.errors import InputError
 from geofit.data.messages import Untranslated, message
 from geofit.io.columns import ADIT_PATH, Schema, plain_name
@@ -106,11 +106,9 @@ def read_centreline(
         if name in shots.fixed and not np.allclose(shots.fixed[name], xyz, rtol=0, atol=1e-3):
             # Numbers that start anew on each line are other stations.
             name = f"{line[i]}.{name}" if line[i] else f"{name} ({int(rows.line[i])})"
-        shots.station(name)
-        shots.fixed[name] = xyz
-        shot = -1
+        shot, offset = -1, np.zeros(3)
+        before, earlier = previous.get(line[i], ("", -1))
         if line[i] in previous:
-            before, earlier = previous[line[i]]
             offset = np.subtract(xyz, shots.fixed[before])
             if before == name or not np.linalg.norm(offset) > 0:
                 rows.reject(
@@ -120,6 +118,14 @@ def read_centreline(
                     message("io.remove-one", "Remove one."),
                 )
                 continue
+            try:
+                require_length(offset)
+            except InputError as bad:
+                rows.reject(i, "x", bad.reason, bad.remedy)
+                continue
+        shots.station(name)
+        shots.fixed[name] = xyz
+        if line[i] in previous:
             shot = shots.add(before, name, offset, int(rows.line[i]))
             if earlier >= 0 and shots.walls and shots.walls[-1][1] == -1:
                 shots.walls[-1] = (shots.walls[-1][0], shot, shots.walls[-1][2])
@@ -183,6 +189,13 @@ def _walls(rows: Rows, level: str) -> np.ndarray:
         for i in np.flatnonzero((value < 0) & rows.ok).tolist():
             rows.warn(
                 i, role, message("io.size-taken-as-missing", "The {role} is below 0; it is taken as missing", role=role)
+            )
+        for i in np.flatnonzero((value > LONGEST) & rows.ok).tolist():
+            rows.reject(
+                i,
+                role,
+                message("io.size-too-large", "The {role} is above {longest:.0f} m", role=role, longest=LONGEST),
+                message("io.correct-value-or-unit", "Correct the value or the unit."),
             )
         sizes[role] = np.where(value >= 0, value, np.nan)
     # Half a width is zero nowhere: such a section has no area.

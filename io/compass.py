@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from geofit.caves.shots import ShotList, polar
+from geofit.caves.shots import ShotList, polar, require_length
 from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
 from geofit.data.messages import Untranslated, message
@@ -171,6 +171,15 @@ def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, jour
     inclination = _angle(
         inclination, back[1], header.corrections[1], header.backsight_corrections[1], False, row, file, journal
     )
+    if any(abs(sight) < _MISSING and not 0 <= sight <= 360 for sight in (values[1], back[0])):
+        journal.add(
+            "warning",
+            file,
+            message("io.bearing-out-of-range", "The {reading} is not between 0 and 360 degrees", reading="compass"),
+            message("io.check-reading", "Check the reading."),
+            row=row,
+            value=f"{start} {end}",
+        )
     if np.isnan(bearing) and abs(inclination) > 89.9:
         bearing = 0.0
     if length < 0 or np.isnan(bearing) or np.isnan(inclination) or abs(inclination) > 90.0:
@@ -205,6 +214,11 @@ def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, jour
         )
         return 0
     offset = polar((length + header.corrections[2]) * FEET, bearing + header.declination, inclination)
+    try:
+        require_length(offset)
+    except InputError as bad:
+        journal.add("error", file, bad.reason, bad.remedy, row=row, value=f"{start} {end}")
+        return 0
     shot = -1
     if not repeated:
         shot = shots.add(

@@ -12,14 +12,14 @@ from pathlib import Path
 
 import numpy as np
 
-from geofit.caves.shots import ShotList, polar
+from geofit.caves.shots import ShotList, polar, require_length, require_walls
 from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
 from geofit.data.files import is_file
 from geofit.data.messages import EMPTY, Message, Untranslated, message
 from geofit.io.journal import Journal, Severity
 from geofit.io.source import Source, as_source
-from geofit.io.survex_settings import QUANTITIES, Settings, unit_of
+from geofit.io.survex_settings import QUANTITIES, Settings, finite, unit_of
 
 __all__ = ["read_survex"]
 
@@ -64,8 +64,8 @@ class _Reader:
             word = (cells[0][1:] or (cells[1] if len(cells) > 1 else "")).casefold()
             rest = cells[1:] if cells[0] != "*" else cells[2:]
             if word == "begin":
-                stack.append((rest[0] if rest else "", settings))
                 name = settings.cased(rest[0]) if rest else ""
+                stack.append((name, settings))
                 settings = replace(settings, prefix=(*settings.prefix, name) if name else settings.prefix)
             elif word == "end":
                 if not stack:
@@ -76,7 +76,21 @@ class _Reader:
                         row=row,
                         value=line.strip(),
                     )
-                settings = stack.pop()[1]
+                begun, before = stack.pop()
+                if rest and settings.cased(rest[0]) != begun:
+                    raise InputError(
+                        message(
+                            "io.end-of-other-block",
+                            "*end closes the block '{name}', but '{begun}' is open",
+                            name=Untranslated(rest[0]),
+                            begun=Untranslated(begun),
+                        ),
+                        message("io.correct-end-name", "Correct the name, or add the missing *begin or *end."),
+                        file=source.name,
+                        row=row,
+                        value=line.strip(),
+                    )
+                settings = before
             elif word == "include":
                 self.include(line, source, settings, depth, row)
             else:
@@ -138,7 +152,7 @@ class _Reader:
                 case "calibrate":
                     return settings.with_calibration(rest)
                 case "declination":
-                    return replace(settings, declination=float(rest[0]) * unit_of(rest[1])[1])
+                    return replace(settings, declination=finite(rest[0]) * unit_of(rest[1])[1])
                 case "infer":
                     return settings.with_inference(rest[0].casefold(), rest[1].casefold() == "on")
                 case "flags":
@@ -153,7 +167,7 @@ class _Reader:
                     return settings
                 case "fix":
                     numbers = [cell for cell in rest[1:] if cell.casefold() != "reference"]
-                    x, y, z = (float(cell) for cell in numbers[:3]) if numbers else (0.0, 0.0, 0.0)
+                    x, y, z = (finite(cell) for cell in numbers[:3]) if numbers else (0.0, 0.0, 0.0)
                     self.fixed.append((settings.full(rest[0]), (x, y, z), row))
                     return settings
                 case _ if word in _REMARKS:
@@ -200,10 +214,15 @@ class _Reader:
                     raise ValueError
                 if settings.style == "normal":
                     self.shot(readings, settings, row)
+                    self.suspicious(readings, settings, file, row, " ".join(cells))
                 else:
                     walls = tuple(settings.reading(name, readings.get(name, "-")) for name in QUANTITIES["walls"])
+                    require_walls(walls)
                     self.tubes[-1].append((settings.full(readings["station"]), walls))
                 self.used += 1
+                return
+            except InputError as bad:
+                self.list_("error", bad.reason, bad.remedy, file, row, " ".join(cells))
                 return
             except (ValueError, KeyError):
                 pass
@@ -219,6 +238,23 @@ class _Reader:
             row,
             " ".join(cells),
         )
+
+    def suspicious(self, readings: dict[str, str], settings: Settings, file: str, row: int, line: str) -> None:
+        """Warn of readings that no instrument shows; they are used, as Survex does."""
+        # Zero errors come later: a small bearing may well be below 0 after them.
+        shown = replace(settings, calibration={})
+        found = []
+        for name in ("tape", "backtape"):
+            if shown.reading(name, readings.get(name, "-")) < 0:
+                found.append(message("io.tape-below-zero", "The {reading} is below 0: the shot is reversed",
+                                     reading=name))  # fmt: skip
+        for name in ("compass", "backcompass"):
+            value = shown.reading(name, readings.get(name, "-"))
+            if value < 0 or value > 360.0 + 1e-6:
+                found.append(message("io.bearing-out-of-range", "The {reading} is not between 0 and 360 degrees",
+                                     reading=name))  # fmt: skip
+        for reason in found:
+            self.list_("warning", reason, message("io.check-reading", "Check the reading."), file, row, line)
 
     def shot(self, readings: dict[str, str], settings: Settings, row: int) -> None:
         names = []
@@ -249,8 +285,12 @@ class _Reader:
         if compass != compass and abs(clino) == 90.0:
             compass = 0.0
         if tape != tape or compass != compass or abs(clino) > 90.0:
-            raise ValueError
+            raise InputError(
+                message("io.shot-without-readings", "The shot has no usable length, bearing and inclination"),
+                message("io.complete-readings", "Complete its readings."),
+            )
         offset = polar(tape, compass + settings.declination, clino)
+        require_length(offset)
         counted = not (splay or settings.duplicate or settings.surface)
         self.shots.append((names[0], names[1], offset, row, counted, not (splay or settings.surface)))
 
@@ -269,6 +309,7 @@ class _Reader:
                     row,
                     a,
                 )
+                self.used -= 1
                 continue
             number = found.add(a, b, offset, row, counted=counted, passage=passage)
             if passage:

@@ -9,7 +9,7 @@ import numpy as np
 
 from geofit.io.units import METRES
 
-__all__ = ["QUANTITIES", "Settings", "unit_of"]
+__all__ = ["QUANTITIES", "Settings", "finite", "unit_of"]
 
 #: Readings of each kind, under the names used here.
 QUANTITIES = {
@@ -41,6 +41,14 @@ _UNITS = {
 def unit_of(word: str) -> tuple[str, float]:
     """Return the kind of a unit, and metres or degrees of one; KeyError if it is unknown."""
     return _UNITS[word.casefold()]
+
+
+def finite(cell: str) -> float:
+    """Return the number of a cell; ValueError if it is not a finite one."""
+    value = float(cell)
+    if not np.isfinite(value):
+        raise ValueError(cell)
+    return value
 
 
 @dataclass(frozen=True)
@@ -141,7 +149,7 @@ class Settings:
             return float("nan")
         kind, factor = self.units.get(name, ("", 1.0))
         zero, scale, outside = self.calibration.get(name, (0.0, 1.0, False))
-        value = float(cell) * scale if outside else (float(cell) - zero) * scale
+        value = finite(cell) * scale if outside else (finite(cell) - zero) * scale
         value = float(np.degrees(np.arctan(value * factor / 100.0))) if kind == "percent" else value * factor
         return value - zero if outside else value
 
@@ -151,7 +159,7 @@ def _split(words: list[str]) -> tuple[list[str], list[float]]:
     names, numbers = [], []
     for word in words:
         try:
-            numbers.append(float(word))
+            numbers.append(finite(word))
         except ValueError:
             name = _SAME.get(word.casefold(), word.casefold())
             if name not in (*QUANTITIES["length"], *QUANTITIES["angle"]):

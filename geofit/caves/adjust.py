@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.caves.survey import Survey, SurveyError, first_stations
+from geofit.caves.survey import LONGEST, Survey, SurveyError, first_stations
+from geofit.data.columns import refuse_far
 from geofit.data.errors import SettingsError
 from geofit.data.messages import Untranslated, message
 
@@ -24,6 +25,8 @@ Ints = NDArray[np.int64]
 
 #: Shots that must not change are this much more certain than others.
 _RIGID = 1e-4
+#: A shot that differs less from the coordinates of its fixed stations was computed from them, metres.
+_COMPUTED = 1e-9
 #: How well a station is found again by the next shot, metres: short shots are not exact.
 _STATION = 0.02
 
@@ -125,7 +128,9 @@ def adjust_survey(survey: Survey, *, length_error: float = 0.05, angle_error: fl
     Raises
     ------
     SurveyError
-        If stations are not connected to a fixed one.
+        If stations are not connected to a fixed one, or a shot is too long, as measured or between fixed stations.
+    PointsError
+        If a coordinate of a fixed station is too large.
     SettingsError
         If an error is not above 0.
     """
@@ -141,10 +146,12 @@ def adjust_survey(survey: Survey, *, length_error: float = 0.05, angle_error: fl
     place = {name: i for i, name in enumerate(survey.stations)}
     known = {place[name]: xyz for name, xyz in survey.fixed.items()} or {0: (0.0, 0.0, 0.0)}
     _require_connected(survey, list(known))
+    _require_lengths(survey, survey.offset)
     covariance = shot_covariance(survey, length_error, np.radians(angle_error))
     anchors = np.array(sorted(known), dtype=np.int64)
     xyz = np.zeros((len(survey.stations), 3))
     xyz[anchors] = [known[i] for i in anchors.tolist()]
+    refuse_far(xyz)
     free, normal = _normal_matrix(survey, covariance, anchors)
     if len(free):
         from scipy.sparse.linalg import splu
@@ -156,6 +163,8 @@ def adjust_survey(survey: Survey, *, length_error: float = 0.05, angle_error: fl
         np.subtract.at(right, survey.start, pull)
         xyz[free] += splu(normal).solve(right[free].ravel()).reshape(-1, 3)
     xyz.flags.writeable = False
+    # Fixed stations that are far apart stretch what was measured between them.
+    _require_lengths(survey, xyz[survey.end] - xyz[survey.start])
     residual = xyz[survey.end] - xyz[survey.start] - survey.offset
     loops = sorted(_loops(survey, covariance, known), key=lambda loop: -loop.distance / max(loop.expected, 1e-12))
     return AdjustedSurvey(survey, xyz, residual, tuple(loops), covariance, anchors)
@@ -170,6 +179,27 @@ def shot_covariance(survey: Survey, length_error: float, angle_error: float) -> 
     outer = along[:, :, None] * along[:, None, :]
     covariance = across[:, None, None] * np.eye(3) + (inline - across)[:, None, None] * outer
     return np.asarray(covariance * np.where(survey.rigid, _RIGID**2, 1.0)[:, None, None])
+
+
+def _require_lengths(survey: Survey, offset: Floats) -> None:
+    length = np.hypot.reduce(offset, axis=1)
+    # nan is not at most anything.
+    wrong = np.flatnonzero(~(length <= LONGEST))
+    if len(wrong):
+        k = int(wrong[0])
+        raise SurveyError(
+            message(
+                "caves.shot-between-too-long",
+                "The shot of {survey} from {start} to {end}, row {row}, is {length:.4g} m long; at most {longest:.0f} "
+                "m are allowed. Correct its reading, the unit, or the coordinates of fixed stations.",
+                survey=Untranslated(survey.name),
+                start=Untranslated(survey.stations[survey.start[k]]),
+                end=Untranslated(survey.stations[survey.end[k]]),
+                row=int(survey.row[k]),
+                length=float(length[k]),
+                longest=LONGEST,
+            )
+        )
 
 
 def _require_connected(survey: Survey, known: list[int]) -> None:
@@ -245,6 +275,9 @@ def _loops(survey: Survey, covariance: Floats, known: dict[int, tuple[float, flo
         misclosure = survey.offset[shot].copy()
         if ends[0] != ends[1]:
             misclosure += np.subtract(known[ends[0]], known[ends[1]])
+            if {a, b} == set(ends) and np.abs(misclosure).max() < _COMPUTED:
+                # Nothing was measured: the shot is the difference of two coordinates, as in a centre line.
+                continue
         for path, side in ((from_a, -1.0), (from_b, 1.0)):
             for s, upper in path:
                 misclosure += side * (1.0 if survey.end[s] == upper else -1.0) * survey.offset[s]

@@ -2,22 +2,66 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.caves.survey import Survey
+from geofit.caves.survey import LONGEST, Survey
+from geofit.data.errors import InputError
+from geofit.data.messages import message
 from geofit.data.site import ImportIssue, TableCount
 
-__all__ = ["ShotList", "polar"]
+__all__ = ["ShotList", "polar", "require_length", "require_walls"]
 
 
 def polar(length: float, azimuth: float, inclination: float) -> NDArray[np.float64]:
     """Return the vector (3,) of a length at an azimuth from north and an inclination upwards, degrees."""
     a, i = np.radians(azimuth), np.radians(inclination)
     return length * np.array([np.sin(a) * np.cos(i), np.cos(a) * np.cos(i), np.sin(i)])
+
+
+def require_length(offset: NDArray[np.float64]) -> None:
+    """Refuse a shot that is too long to be meant; readers list its row.
+
+    Raises
+    ------
+    InputError
+        If it is longer than :data:`~geofit.caves.survey.LONGEST`, or its length is not finite.
+    """
+    length = float(np.hypot.reduce(offset))
+    if not length <= LONGEST:
+        raise InputError(
+            message(
+                "caves.shot-too-long",
+                "The shot is {length:.4g} m long; at most {longest:.0f} m are allowed",
+                length=length,
+                longest=LONGEST,
+            ),
+            message("caves.correct-reading-or-unit", "Correct the reading or the unit, or add stations between."),
+        )
+
+
+def require_walls(walls: Iterable[float]) -> None:
+    """Refuse walls (nan where one is missing) that cannot be meant.
+
+    Raises
+    ------
+    InputError
+        If one is below 0, or farther than :data:`~geofit.caves.survey.LONGEST`.
+    """
+    for wall in walls:
+        if wall < 0 or wall > LONGEST:
+            raise InputError(
+                message(
+                    "caves.wall-out-of-range",
+                    "A wall is {distance:.4g} m away; 0 to {longest:.0f} m are possible",
+                    distance=wall,
+                    longest=LONGEST,
+                ),
+                message("caves.correct-wall", "Correct the reading or the unit, or leave it out."),
+            )
 
 
 @dataclass

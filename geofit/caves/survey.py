@@ -14,7 +14,7 @@ from geofit.data.errors import GeofitError
 from geofit.data.messages import Untranslated, message
 from geofit.data.site import ImportIssue, TableCount
 
-__all__ = ["WALLS", "Survey", "SurveyError"]
+__all__ = ["LONGEST", "WALLS", "Survey", "SurveyError"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -22,6 +22,8 @@ Mask = NDArray[np.bool_]
 
 #: The columns of :attr:`Survey.walls`.
 WALLS = ("left", "right", "up", "down")
+#: Longest shot and farthest wall, metres: beyond it a reading or its unit is wrong, and the body would take hours.
+LONGEST = 10_000.0
 _SHOWN = 6
 
 

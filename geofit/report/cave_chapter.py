@@ -25,7 +25,6 @@ from geofit.report.document import (
 from geofit.report.furniture import scale_text
 
 if TYPE_CHECKING:
-    from geofit.caves.adjust import Loop
     from geofit.caves.body import PassageBody
     from geofit.caves.clearance import Clearance
     from geofit.caves.strata import Stratum
@@ -78,7 +77,7 @@ def _facts(found: CaveFindings, t: Language) -> Facts:
     survey, sections = adjusted.survey, found.body.sections
     used = np.unique([survey.start[sections.shot], survey.end[sections.shot]])
     tall = float(np.ptp(adjusted.xyz[used, 2]))
-    loops = _closing(found)
+    loops = adjusted.loops
     checked = sum(loop.suspicious for loop in loops)
     return Facts(
         (
@@ -116,15 +115,11 @@ def _drawings(found: CaveFindings, t: Language) -> list[Block]:
     return [Heading(t("Plan and long section")), *drawn] if drawn else []
 
 
-def _closing(found: CaveFindings) -> list[Loop]:
-    """Return the loops that check anything: not a shot that was computed from the coordinates of both of its ends."""
-    return [loop for loop in found.body.adjusted.loops if len(loop.stations) > 2 or loop.distance > digits.NOISE]
-
-
 def _loops(found: CaveFindings, t: Language) -> list[Block]:
-    loops = _closing(found)
+    adjusted = found.body.adjusted
+    loops = adjusted.loops
     blocks: list[Block] = [Heading(t("Loop closure"))]
-    if not loops and found.body.adjusted.loops:
+    if not loops and len(adjusted.anchors) == len(adjusted.survey.stations):
         return [*blocks, Paragraph(t("Stations were given by coordinates; no loop checks them."))]
     if not loops:
         text = t("The survey has no loop: nothing checks its shots, and a blunder would stay unseen.")

@@ -11,7 +11,7 @@ from cave_surveys import chain, network
 from geofit.caves.adjust import adjust_survey
 from geofit.caves.shots import ShotList
 from geofit.caves.survey import SurveyError
-from geofit.data.errors import SettingsError
+from geofit.data.errors import PointsError, SettingsError
 
 
 def dense(adjusted):
@@ -50,6 +50,24 @@ def test_without_noise_the_truth_returns(seed):
     order = [int(name) for name in survey.stations]
     np.testing.assert_allclose(adjusted.xyz, points[order], atol=1e-9)
     assert all(loop.distance < 1e-9 for loop in adjusted.loops)
+
+
+@pytest.mark.parametrize(
+    ("offset", "fixed", "error", "code"),
+    [
+        ([np.inf, 0, 0], {}, SurveyError, "caves.shot-between-too-long"),
+        ([1e308, 0, 0], {}, SurveyError, "caves.shot-between-too-long"),
+        ([10, 0, 0], {"A": (0, 0, 0), "C": (1e6, 0, 0)}, SurveyError, "caves.shot-between-too-long"),
+        ([10, 0, 0], {"A": (1e12, 0, 0)}, PointsError, "data.coordinate-too-large"),
+    ],
+)
+def test_lengths_that_cannot_be_meant_are_refused(offset, fixed, error, code):
+    shots = ShotList()
+    shots.add("A", "B", np.array(offset, float), 7)
+    shots.add("B", "C", np.array([0.0, 5.0, 0.0]), 8)
+    with pytest.raises(error) as wrong:
+        adjust_survey(shots.survey("cave").with_fixed(fixed))
+    assert wrong.value.code == code
 
 
 def test_a_planted_misclosure_is_reported_and_spread_evenly():

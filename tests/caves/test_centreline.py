@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from geofit.caves.adjust import adjust_survey
 from geofit.caves.body import centreline_body
 from geofit.data.errors import InputError
 from geofit.io.centreline import read_centreline
@@ -68,6 +71,23 @@ def test_a_negative_size_is_missing_and_a_repeated_station_is_listed(table):
     assert "io.size-taken-as-missing" in reasons
     assert found.counts[0].read == 5
     assert found.counts[0].listed == 2
+
+
+@pytest.mark.parametrize(("row", "code"), [("1e9,0,0,1", "caves.shot-too-long"), ("9,0,0,1e300", "io.size-too-large")])
+def test_a_blunder_of_size_is_listed_and_leaves_no_station(table, row, code):
+    found = table(f"x,y,z,radius\n0,0,0,1\n{row}\n20,0,0,1\n")
+    assert found.stations == ("row 2", "row 4")
+    (issue,) = [issue for issue in found.issues if issue.severity == "error"]
+    assert (issue.row, issue.reason.code) == (3, code)
+    assert found.counts[0].listed == 1
+
+
+def test_coordinates_alone_make_no_loop(table):
+    """A shot between two fixed stations checks them only where it was measured."""
+    survey = table("x,y,z,radius\n500000,0,0,1\n500010.1,0,0,1\n500020,0.3,0,1\n500030,5,0,1\n")
+    assert not adjust_survey(survey).loops
+    measured = replace(survey, offset=survey.offset + np.array([0.1, 0.0, 0.0]))
+    assert [round(loop.distance, 6) for loop in adjust_survey(measured).loops] == [0.1] * 3
 
 
 @pytest.mark.parametrize(

@@ -103,7 +103,15 @@ def test_backsights_are_averaged_and_disagreement_is_listed(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "row", ["A B ten 0 0 1 1 1 1", "A B 10 0 0 1 1", "A B -5 0 0 1 1 1 1", "A B 5 0 95 1 1 1 1", "A A 5 0 0 1 1 1 1"]
+    "row",
+    [
+        "A B 1e300 0 0 1 1 1 1",
+        "A B ten 0 0 1 1 1 1",
+        "A B 10 0 0 1 1",
+        "A B -5 0 0 1 1 1 1",
+        "A B 5 0 95 1 1 1 1",
+        "A A 5 0 0 1 1 1 1",
+    ],
 )
 def test_a_line_that_is_no_shot_is_listed(tmp_path, row):
     found = survey(tmp_path, ["P Q 1 0 0 1 1 1 1", row])
@@ -111,6 +119,13 @@ def test_a_line_that_is_no_shot_is_listed(tmp_path, row):
     (issue,) = found.issues
     assert issue.severity == "error"
     assert issue.row == 11
+
+
+def test_a_bearing_that_no_compass_shows_is_used_with_a_warning(tmp_path):
+    found = survey(tmp_path, ["A B 10 400 0 1 1 1 1", "B C 10 360 0 1 1 1 1"])
+    (issue,) = found.issues
+    assert (issue.severity, issue.row, issue.reason.code) == ("warning", 10, "io.bearing-out-of-range")
+    assert found.counts[0].used == 2
 
 
 def test_a_shot_of_no_length_carries_the_last_walls(tmp_path):

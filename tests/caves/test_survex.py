@@ -128,6 +128,73 @@ def test_included_files_keep_the_settings(svx, tmp_path):
         svx("*include nothing\n")
 
 
+@pytest.mark.parametrize(
+    ("line", "code"),
+    [
+        ("1 2 10 inf 0", "io.line-out-of-order"),
+        ("1 2 nan 0 0", "io.line-out-of-order"),
+        ("1 2 1e308 90 0", "caves.shot-too-long"),
+        ("1 2 1000000 90 0", "caves.shot-too-long"),
+        ("1 2 10 90 95", "io.shot-without-readings"),
+        ("1 2 - 90 0", "io.shot-without-readings"),
+        ("1 1 5 90 0", "io.shot-joins-itself"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:Mean of empty slice")
+def test_readings_that_make_no_shot_are_listed(svx, line, code):
+    found = svx(f"{line}\n2 3 10 0 0\n")
+    (issue,) = found.issues
+    assert (issue.severity, issue.row, issue.reason.code) == ("error", 1, code)
+    assert found.stations == ("2", "3")
+    assert (found.counts[0].used, found.counts[0].listed) == (1, 1)
+
+
+@pytest.mark.parametrize(
+    ("lines", "codes"),
+    [
+        ("1 2 10 400 0", ["io.bearing-out-of-range"]),
+        ("1 2 -10 -30 0", ["io.tape-below-zero", "io.bearing-out-of-range"]),
+        ("*units compass grads\n1 2 10 400 0", []),
+        ("*calibrate compass 5\n1 2 10 2 0", []),
+        ("*data normal from to tape compass backcompass clino\n1 2 10 359 179 0\n2 3 10 180 361 0",
+         ["io.bearing-out-of-range"]),
+        ("*data normal from to tape backtape compass clino\n1 2 - -10 30 0", ["io.tape-below-zero"]),
+    ],
+)  # fmt: skip
+def test_readings_that_no_instrument_shows_are_used_with_a_warning(svx, lines, codes):
+    """As Survex does; zero errors and units come before or after the check as they do there."""
+    found = svx(f"{lines}\n")
+    assert [issue.reason.code for issue in found.issues] == codes
+    assert {issue.severity for issue in found.issues} <= {"warning"}
+    assert found.counts[0].listed == 0
+
+
+@pytest.mark.parametrize(
+    "command",
+    ["*fix 1 nan 0 0", "*declination inf degrees", "*calibrate tape nan", "*units tape inf metres"],
+)
+def test_settings_are_finite(svx, command):
+    (issue,) = svx(f"{command}\n1 2 1 0 0\n").issues
+    assert (issue.severity, issue.reason.code) == ("error", "io.command-unreadable")
+
+
+@pytest.mark.parametrize("wall", ["-1", "1e9"])
+def test_walls_out_of_range_are_listed(svx, wall):
+    found = svx(f"1 2 1 0 0\n*data passage station left right up down\n1 1 {wall} 1 1\n2 1 1 1 1\n")
+    (issue,) = found.issues
+    assert (issue.severity, issue.row, issue.reason.code) == ("error", 3, "caves.wall-out-of-range")
+    assert len(found.walls) == 1
+
+
+def test_an_end_names_its_own_block(svx):
+    with pytest.raises(InputError) as wrong:
+        svx("*begin a\n1 2 10 90 0\n*end b\n")
+    assert (wrong.value.code, wrong.value.row) == ("io.end-of-other-block", 3)
+    with pytest.raises(InputError):
+        svx("*begin\n1 2 10 90 0\n*end a\n")
+    assert len(svx("*begin A\n1 2 10 90 0\n*end a\n*begin b\n3 4 1 0 0\n*end\n").start) == 2
+
+
 @pytest.mark.parametrize("text", ["*begin a\n1 2 1 0 0\n", "1 2 1 0 0\n*end\n"])
 def test_blocks_must_match(svx, text):
     with pytest.raises(InputError, match="begin"):
