@@ -51,7 +51,12 @@ def read_body_points(path: str | PathLike[str]) -> PickedPoints:
     InputError
         If the file cannot be read, columns are missing, or no row can be used.
     """
-    source, journal = Source(path=Path(path)), Journal()
+    journal = Journal()
+    with journal.handed_over():
+        return _picked(Source(path=Path(path)), journal)
+
+
+def _picked(source: Source, journal: Journal) -> PickedPoints:
     rows = read_rows(source, BODY_POINTS, journal)
     (x, y), z = rows.places(), rows.numbers("z", no_data=True)
     normals = np.column_stack([rows.numbers(role, required=False) for role in ("nx", "ny", "nz")])

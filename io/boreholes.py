@@ -99,15 +99,16 @@ def read_boreholes(
     SPE 84246.
     """
     journal = Journal()
-    found = load_boreholes(
-        as_source(collar),
-        as_source(survey) if survey is not None else None,
-        [as_source(table) for table in intervals],
-        dip,
-        journal,
-        declination=declination,
-        method=method,
-    )
+    with journal.handed_over():
+        found = load_boreholes(
+            as_source(collar),
+            as_source(survey) if survey is not None else None,
+            [as_source(table) for table in intervals],
+            dip,
+            journal,
+            declination=declination,
+            method=method,
+        )
     return Boreholes(
         found.holes,
         found.paths,

@@ -88,6 +88,11 @@ def read_centreline(
             message("io.give-axis-or-floor", "Give 'axis' or 'floor'."),
         )
     source, journal = as_source(source), journal if journal is not None else Journal()
+    with journal.handed_over():
+        return _survey(source, journal, level)
+
+
+def _survey(source: Source, journal: Journal, level: Literal["axis", "floor"]) -> Survey:
     first_issue, first_count = len(journal.issues), len(journal.counts)
     rows = _rows(source, journal)
     if not any(role in rows.columns for role in _SIZES):
@@ -137,7 +142,9 @@ def read_centreline(
         journal.add(
             "warning",
             source.name,
-            message("io.line-of-one-station", "The line {line} has one usable station only", line=Untranslated(name)),
+            message("io.line-of-one-station", "The line {line} has one usable station only", line=Untranslated(name))
+            if name
+            else message("io.table-of-one-station", "The line has one usable station only"),
             message("io.add-stations", "Add its other stations."),
             value=name,
         )

@@ -109,7 +109,8 @@ def read_compass(source: Source | str | Path, journal: Journal | None = None) ->
             message("io.walls-interpolated", "They are interpolated along the passage."),
         )
     journal.count(source.name, read, read - used)
-    return shots.survey(source.name, journal.issues[first_issue:], journal.counts[first_count:])
+    with journal.handed_over():
+        return shots.survey(source.name, journal.issues[first_issue:], journal.counts[first_count:])
 
 
 def _header(line: str) -> _Header:

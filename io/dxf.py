@@ -17,12 +17,26 @@ from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.units import list_conversion, metres_of
 
-__all__ = ["LINES", "ClosedLine", "Entity", "closed_lines", "count_points", "on_layers", "open_drawing", "problem"]
+__all__ = [
+    "EXPLODE",
+    "LINES",
+    "ClosedLine",
+    "Entity",
+    "closed_lines",
+    "count_points",
+    "on_layers",
+    "open_drawing",
+    "problem",
+]
 
 #: Types that are read as points in their order; and those whose words name a place.
 LINES, WORDS = ("LWPOLYLINE", "POLYLINE", "LINE", "POINT"), ("TEXT", "MTEXT", "INSERT")
 #: Types that may be closed lines, and how far corners along an arc may lie off it, as a share of the line's size.
 CLOSABLE, ARC = ("LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE"), 0.002
+
+#: What is said of lines in blocks.
+BLOCK = message("io.block-not-read", "Lines in a block are not read")
+EXPLODE = message("io.explode-block", "Explode the block in CAD.")
 
 #: $INSUNITS of the units that are not metres, and drawing units a metre.
 _UNITS = {1: ("inches", 39.3701), 2: ("feet", 3.28084), 4: ("millimetres", 1000.0), 5: ("centimetres", 100.0)}
@@ -32,7 +46,8 @@ _UNITS = {1: ("inches", 39.3701), 2: ("feet", 3.28084), 4: ("millimetres", 1000.
 class Entity:
     """One entity: ``vertices`` (x, y, z) in drawing units, ``words`` of a text or block, ``first`` its first number.
 
-    ``size`` counts its points, 1 for an entity without any; z is nan where a whole entity lies at 0.
+    ``size`` counts its points, 1 for an entity without any; z is nan where a whole entity lies at 0; ``inside`` holds
+    the layers of the lines in a block.
     """
 
     type: str
@@ -42,6 +57,7 @@ class Entity:
     arcs: bool = False
     words: str = ""
     first: int = 1
+    inside: tuple[str, ...] = ()
 
     @property
     def size(self) -> int:
@@ -80,6 +96,7 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
             entities.append(entity)
             first += entity.size
         unit = int(document.header.get("$INSUNITS", 0))
+        _warn_of_paper(document, source, journal)
     _warn_of_unit(unit, source, journal, scale_stated)
     return entities
 
@@ -123,13 +140,21 @@ def closed_lines(
                 size = float(np.ptp(np.array(corners), axis=0).max()) if corners else 0.0
                 if path.is_closed and size > 0:
                     xyz = np.array([tuple(place) for place in path.flattening(ARC * size)], float)[:-1]
-            if source.table and not fnmatchcase(layer.casefold(), source.table.casefold()):
+            inside = _layers_inside(raw, layer) if kind == "INSERT" else ()
+            if source.table:
+                pattern = source.table.casefold()
+                inside = tuple(one for one in inside if fnmatchcase(one.casefold(), pattern))
+                if not inside and not fnmatchcase(layer.casefold(), pattern):
+                    continue
+            for one in inside:
+                journal.add("error", source.name, BLOCK, EXPLODE, row=number, column=one, value=kind)
+            if inside:
                 continue
             if len(xyz) < 3 or not np.isfinite(xyz).all():
                 journal.add(
                     "note" if with_open_lines or kind not in CLOSABLE else "error",
                     source.name,
-                    message("io.not-closed-line", "A {entity} that is not a closed line is not used", entity=kind),
+                    message("io.not-closed-line", "The {entity} is not a closed line and is not used", entity=kind),
                     message("io.close-polyline", "Close the polyline in CAD if it outlines the body."),
                     row=number,
                     column=layer,
@@ -137,6 +162,7 @@ def closed_lines(
                 )
                 continue
             found.append(ClosedLine(layer, factor * xyz))
+        _warn_of_paper(document, source, journal)
     _warn_of_unit(unit, source, journal, scale_stated)
     return found
 
@@ -178,6 +204,27 @@ def _readable(source: Source) -> Iterator[None]:
         ) from None
 
 
+def _warn_of_paper(document: Any, source: Source, journal: Journal) -> None:
+    """Warn of lines on the sheets of a drawing: only its model space is to scale."""
+    for sheet in document.layouts:
+        if sheet.is_modelspace:
+            continue
+        layers = [_clean(str(raw.dxf.layer)) for raw in sheet if raw.dxftype() in (*LINES, *CLOSABLE)]
+        if layers:
+            journal.add(
+                "warning",
+                source.name,
+                message(
+                    "io.paper-space-not-read",
+                    "Lines in the paper space '{sheet}' are not read ({count}); their layers: {layers}",
+                    sheet=_clean(str(sheet.name)),
+                    count=len(layers),
+                    layers=", ".join(sorted(set(layers))),
+                ),
+                message("io.move-to-model-space", "Move lines of horizons and bodies to the model space."),
+            )
+
+
 def _warn_of_unit(unit: int, source: Source, journal: Journal, scale_stated: bool) -> None:
     if unit in _UNITS and not scale_stated and (source.unit or source.usual_unit) is None:
         name, per_metre = _UNITS[unit]
@@ -212,7 +259,16 @@ def _entity(raw: Any, first: int, factor: float) -> Entity:
         kind in ("LWPOLYLINE", "POLYLINE") and bool(getattr(raw, "has_arc", False)),
         words,
         first,
+        _layers_inside(raw, _clean(str(raw.dxf.layer))) if kind == "INSERT" else (),
     )
+
+
+def _layers_inside(raw: Any, layer: str) -> tuple[str, ...]:
+    """Return the layers of the lines in an inserted block; those on layer 0 take the layer of the insert, as in CAD."""
+    block = raw.block()
+    lines = () if block is None else (one for one in block if one.dxftype() in (*LINES, *CLOSABLE, "INSERT"))
+    names = {_clean(str(one.dxf.layer)) for one in lines if one.dxftype() != "POINT"}
+    return tuple(sorted(layer if name == "0" else name for name in names))
 
 
 def _clean(text: str) -> str:
@@ -276,10 +332,12 @@ def on_layers(entities: Iterable[Entity], source: Source, journal: Journal) -> t
 
 def problem(entity: Entity, *, closed: bool = False) -> Message:
     """Return why an entity is not a line of points, empty if it is one; ``closed`` allows closed polylines."""
+    if entity.inside:
+        return BLOCK
     if entity.type not in LINES or not entity.vertices:
         return message(
             "io.entity-not-a-line",
-            "A {entity} is not an LWPOLYLINE, POLYLINE, LINE or POINT",
+            "The {entity} is not an LWPOLYLINE, POLYLINE, LINE or POINT",
             entity=entity.type,
         )
     xyz = np.array(entity.vertices)

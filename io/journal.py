@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Literal
 
+from geofit.data.errors import GeofitError
 from geofit.data.messages import EMPTY, Message, folded, message
 from geofit.data.site import ImportIssue, TableCount
 from geofit.io.source import Source
@@ -56,6 +58,15 @@ class Journal:
         self._alike[alike] = (count + 1, row, reason)
         if count < MOST:
             self.found.append(ImportIssue(file, row, folded(column), folded(value), severity, reason, remedy))
+
+    @contextmanager
+    def handed_over(self) -> Iterator[None]:
+        """Give an error of the block what was found before it: the rows that were not used may be its reason."""
+        try:
+            yield
+        except GeofitError as error:
+            error.issues = error.issues or tuple(self.issues)
+            raise
 
     def take(self, issues: Iterable[ImportIssue]) -> None:
         """List what another journal found."""

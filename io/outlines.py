@@ -72,7 +72,12 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> Dr
     InputError
         If the file cannot be read, a layer is missing, or there are no outlines on two or more planes.
     """
-    source, journal = Source(path=Path(path)), Journal()
+    journal = Journal()
+    with journal.handed_over():
+        return _drawn(Source(path=Path(path)), layers, journal)
+
+
+def _drawn(source: Source, layers: Collection[str], journal: Journal) -> DrawnOutlines:
     match source.path.suffix.casefold():
         case ".dxf":
             rings = [(line.layer, line.xyz, "") for line in closed_lines(source, journal)]
@@ -93,11 +98,7 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> Dr
         counts[layer] = counts.get(layer, 0) + 1
     missing = [layer for layer in layers if layer not in counts]
     if missing:
-        raise InputError(
-            message("io.no-outline-layer", "No closed line lies on layer '{layer}'", layer=missing[0]),
-            message("io.name-one-of-these", "Name one of: {names}.", names=", ".join(counts) or "–"),
-            file=source.name,
-        )
+        raise _no_outline(missing[0], counts, source, journal)
     planes = _by_plane([one for one in rings if not layers or one[0] in layers], source, journal)
     if len(planes) < 2:
         raise InputError(
@@ -116,6 +117,29 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> Dr
         )
     outlines = tuple(Outline(name, one[1]) for name, own in zip(_names(planes), planes, strict=True) for one in own)
     return DrawnOutlines(outlines, counts, tuple(journal.issues), dict(journal.inputs))
+
+
+def _no_outline(layer: str, counts: dict[str, int], source: Source, journal: Journal) -> InputError:
+    """Return the error for a layer without a closed line: what else is on it, or which layers have one."""
+    there = [issue for issue in journal.issues if issue.column == layer]
+    remedy = (
+        message("io.close-or-explode", "Close the polylines that outline the body, explode blocks in CAD.")
+        if there
+        else message("io.name-one-of-these", "Name one of: {names}.", names=", ".join(counts))
+        if counts
+        else message("io.draw-closed-polylines", "No layer has one: draw the outlines as closed polylines.")
+    )
+    blocks = sum(issue.reason.code == "io.block-not-read" for issue in there)
+    reason = message("io.no-outline-layer", "No closed line lies on layer '{layer}'", layer=layer)
+    if there:
+        reason = message(
+            "io.other-on-layer",
+            "{reason}; entities there that are not used: {others}, blocks with its lines: {blocks}",
+            reason=reason,
+            others=len(there) - blocks,
+            blocks=blocks,
+        )
+    return InputError(reason, remedy, file=source.name)
 
 
 def _by_plane(rings: Sequence[Ring], source: Source, journal: Journal) -> list[list[Ring]]:

@@ -103,7 +103,8 @@ def read_points(
         source = mapping.fill(source)
     journal = Journal()
     tell(progress, "read", 0.0)
-    horizons = load_picks(source, HorizonNames(), journal, alone=legible(Path(path).stem), progress=progress)
+    with journal.handed_over():
+        horizons = load_picks(source, HorizonNames(), journal, alone=legible(Path(path).stem), progress=progress)
     tell(progress, "compare places", 0.8)
     for name, points in horizons.items():
         list_places(name, points, journal)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.messages import message
-from geofit.io.dxf import on_layers, open_drawing, problem
+from geofit.io.dxf import EXPLODE, LINES, on_layers, open_drawing, problem
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.source import Source
@@ -62,7 +62,9 @@ def read_drawing(
     numbers: list[int] = []
     for entity in entities:
         layer = entity.layer
-        horizon, trouble = horizons.match(layer.strip()), problem(entity, closed=closed)
+        trouble = problem(entity, closed=closed)
+        named = (horizons.match(name.strip()) for name in (layer, *entity.inside))
+        horizon = next((name for name in named if name is not None), None)
         if horizon is None or trouble:
             stranger = message("io.layer-not-a-horizon", "Layer '{layer}' is not a horizon of the site", layer=layer)
             reason = trouble if horizon is not None else stranger
@@ -75,8 +77,14 @@ def read_drawing(
                     reason=reason,
                     entity=entity.type,
                     count=entity.size,
+                )
+                if entity.type in LINES and entity.vertices
+                else message(
+                    "io.whole-entity-not-used", "{reason}; {entity} is not used", reason=reason, entity=entity.type
                 ),
-                message("io.draw-polyline-on-layer", "Draw the horizon as a polyline on the layer with its name."),
+                EXPLODE
+                if entity.inside and horizon is not None
+                else message("io.draw-polyline-on-layer", "Draw the horizon as a polyline on the layer with its name."),
                 row=entity.first,
                 column=layer,
                 value=entity.type,

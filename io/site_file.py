@@ -132,7 +132,18 @@ def build_site(
     InputError
         As :func:`read_site`.
     """
-    reader = Reader(path)
+    with journal.handed_over():
+        return _built(top, Reader(path), journal, mappings, progress)
+
+
+def _built(
+    top: dict[str, Any],
+    reader: Reader,
+    journal: Journal,
+    mappings: Sequence[ColumnMapping] | None,
+    progress: Progress | None,
+) -> Site:
+    path = reader.path
     reader.keys(top, TOP, "The site file")
     label = reader.get(top, "site", dict, "the site file") or {}
     reader.keys(label, ("name", "crs", "mapping", "order", "unit", "datum"), "[site]")
@@ -193,7 +204,7 @@ def build_site(
     for name, sets in gathered.items():
         horizon = stated.get(name) or _Horizon(name, None, {}, FitSettings())
         settings[name] = horizon.settings
-        points[name] = _with_accuracy(reader, PointSet.concatenate(sets), horizon)
+        points[name] = _with_accuracy(reader, PointSet.concatenate(sets), horizon, journal)
         list_places(name, points[name], journal, horizon.settings.coincidence_distance)
     order, faults = read_relations(reader, top, label, list(points))
     tell(progress, "read", 1.0)
@@ -423,8 +434,27 @@ def _joined(sets: list[Orientations]) -> Orientations | None:
     return Orientations(**{f.name: np.concatenate([getattr(s, f.name) for s in sets]) for f in fields(Orientations)})
 
 
-def _with_accuracy(reader: Reader, points: PointSet, horizon: _Horizon) -> PointSet:
+def _with_accuracy(reader: Reader, points: PointSet, horizon: _Horizon, journal: Journal) -> PointSet:
     """Return the points with the site file's accuracy where their own file states none."""
+    refused = [issue for issue in journal.issues if issue.severity == "error" and issue.row]
+    if not len(points) and refused:
+        raise reader.fail(
+            message(
+                "io.horizon-without-usable-point",
+                "Horizon '{name}' has no usable point; entries of the files that are not used: {count}, the first is "
+                "{file}, row {row}: {reason}",
+                name=horizon.name,
+                count=len(refused),
+                file=Untranslated(refused[0].file),
+                row=refused[0].row,
+                reason=refused[0].reason,
+            ),
+            message(
+                "io.correct-listed-or-horizon",
+                "Correct the listed entries, or the name or code of the horizon, or remove its [[horizon]] table.",
+            ),
+            "name",
+        )
     if not len(points):
         raise reader.fail(
             message("io.horizon-without-point", "Horizon '{name}' has no point in any file", name=horizon.name),

@@ -7,6 +7,7 @@ note. (Survex manual, "Survex data files".)
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
 from geofit.data.files import is_file
 from geofit.data.messages import EMPTY, Message, Untranslated, message
+from geofit.data.site import ImportIssue
 from geofit.io.journal import Journal, Severity
 from geofit.io.source import Source, as_source
 from geofit.io.survex_settings import QUANTITIES, Settings, finite, unit_of
@@ -294,8 +296,8 @@ class _Reader:
         counted = not (splay or settings.duplicate or settings.surface)
         self.shots.append((names[0], names[1], offset, row, counted, not (splay or settings.surface)))
 
-    def survey(self) -> Survey:
-        """Return what was read, equated stations under one name."""
+    def survey(self, issues: Sequence[ImportIssue]) -> Survey:
+        """Return what was read, equated stations under one name; ``issues`` may be why there is nothing."""
         found = ShotList()
         between: dict[tuple[str, str], int] = {}
         for start, end, offset, row, counted, passage in self.shots:
@@ -328,7 +330,7 @@ class _Reader:
                     row,
                     name,
                 )
-        return found.survey(self.source.name)
+        return found.survey(self.source.name, issues)
 
     def walls(
         self, tube: list[tuple[str, tuple[float, ...]]], between: dict[tuple[str, str], int], found: ShotList
@@ -387,8 +389,9 @@ def read_survex(source: Source | str | Path, journal: Journal | None = None) -> 
     source, journal = as_source(source), journal if journal is not None else Journal()
     first_issue, first_count = len(journal.issues), len(journal.counts)
     reader = _Reader(source, journal)
-    reader.file(source, Settings())
-    survey = reader.survey()
+    with journal.handed_over():
+        reader.file(source, Settings())
+        survey = reader.survey(journal.issues[first_issue:])
     if reader.remarks:
         names = ", ".join(f"*{name} ({count})" for name, count in sorted(reader.remarks.items()))
         journal.add(

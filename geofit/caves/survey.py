@@ -102,10 +102,19 @@ class Survey:
             object.__setattr__(self, name, array)
         object.__setattr__(self, "fixed", MappingProxyType(dict(self.fixed)))
         if not len(self.start):
+            error = next((issue for issue in self.issues if issue.severity == "error"), None)
             raise SurveyError(
                 message(
+                    "caves.no-shot-because",
+                    "The survey {name} has no usable shot; the first row that is not used is {row}: {reason}.",
+                    name=Untranslated(self.name),
+                    row=error.row,
+                    reason=error.reason,
+                )
+                if error
+                else message(
                     "caves.survey-without-shot",
-                    "The survey {name} has no usable shot. See its listed rows.",
+                    "The survey {name} has no shot. Give a file with one.",
                     name=Untranslated(self.name),
                 )
             )

@@ -10,7 +10,7 @@ import typer
 
 from geofit.cli.app import app
 from geofit.cli.body_lines import BodyLines, body_lines
-from geofit.cli.console import listening, print_counts, print_issues, print_json, print_table, say, with_exit_code
+from geofit.cli.console import list_issues, listening, print_counts, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Author, Certificate, Json, Lang, LanguageCode, Organisation, OriginChoice, Out, Report
 from geofit.cli.signing import read_origin, signed_by
 from geofit.data.errors import InputError
@@ -73,10 +73,10 @@ def body(
             run = run_body(drawn.data, out, name=name, settings=settings, progress=progress, signed=signed)
         else:
             holes = _read(source, survey, intervals or [])
+            list_issues(holes.issues, out)
+            print_counts(holes.counts)
             if not code:
                 raise _no_code(source, holes)
-            print_issues(holes.issues)
-            print_counts(holes.counts)
             title = getattr(holes, "title", None)
             site = None if isinstance(holes, Boreholes) else holes
             signed = signed_by(site, author, organisation, zero, certificate=page)

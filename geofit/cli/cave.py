@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import listening, print_counts, print_issues, print_json, print_table, say, with_exit_code
+from geofit.cli.console import list_issues, listening, print_counts, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Json, Lang, LanguageCode, Out, Report
 
 if TYPE_CHECKING:
@@ -52,8 +52,9 @@ def cave(
     measured = read_survey(survey)
     planned = None if excavation is None else read_survey(excavation)
     horizons = {name: surface for path in horizon or () for name, surface in read_surfaces(path).items()}
-    print_issues(measured.issues)
-    print_counts(measured.counts)
+    surveys = [measured] if planned is None else [measured, planned]
+    list_issues([issue for one in surveys for issue in one.issues], out)
+    print_counts([count for one in surveys for count in one.counts])
     with listening() as progress:
         run = measure_passages(
             measured, radius=radius, spacing=spacing, excavation=planned, horizons=horizons, progress=progress

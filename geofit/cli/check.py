@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import print_counts, print_issues, print_json, print_results, with_exit_code
+from geofit.cli.console import list_issues, print_counts, print_json, print_results, with_exit_code
 from geofit.cli.options import SURFACE_FILES, Crs, Decimal, Json, SectionColumn, Sep, SurfaceColumn, X, Y, Z
 from geofit.cli.sources import pick, read_source
 
@@ -51,7 +51,7 @@ def check(
         "crs": crs,
     }
     site = read_source(points, columns, None)
-    print_issues(site.issues)
+    list_issues(site.issues, out)
     print_counts(site.counts)
     name, found = pick("horizon", site.horizons, horizon, points)
     _, shape = pick("surface", read_surfaces(surface), name if horizon else None, surface)

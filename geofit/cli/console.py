@@ -10,12 +10,13 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec
 
 import typer
 
 from geofit.data.errors import Cancelled, GeofitError, InputError
-from geofit.data.files import cannot_write
+from geofit.data.files import cannot_write, folder_for
 from geofit.data.messages import Message, gravest_first
 from geofit.data.progress import Progress
 from geofit.data.site import ImportIssue, TableCount
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from geofit.report.result import HorizonResult
 
 __all__ = [
+    "list_issues",
     "listening",
     "print_counts",
     "print_issues",
@@ -79,6 +81,7 @@ def with_exit_code(command: Callable[P, int]) -> Callable[P, None]:
             say("Stopped. Files that were begun have been removed; finished ones are whole.")
             code = 130
         except GeofitError as error:
+            _list_reasons(error, kwargs.get("out"))
             say(f"geofit: {error}")
             code = 2
         except OSError as error:
@@ -96,6 +99,18 @@ def with_exit_code(command: Callable[P, int]) -> Callable[P, None]:
         raise typer.Exit(code)
 
     return run
+
+
+def _list_reasons(error: GeofitError, out: object) -> None:
+    """List what was found before an error, in the folder of results where the command has one."""
+    if not error.issues:
+        return
+    # geofit export names a file there.
+    folder = out if isinstance(out, Path) and (out.is_dir() or not out.suffix) else None
+    try:
+        list_issues(error.issues, folder)
+    except GeofitError:  # the folder cannot be written: the reason is still to be seen
+        list_issues(error.issues, None)
 
 
 def _system_library(message: str) -> str | None:
@@ -237,26 +252,41 @@ def print_table(header: Sequence[str], rows: Sequence[Sequence[str]], left: Sequ
     _stdout().print(table)
 
 
-def print_issues(issues: Sequence[ImportIssue], where: str = "") -> None:
-    """Summarise what the readers found on stderr: counts, and one of each kind of errors and warnings.
+def list_issues(issues: Sequence[ImportIssue], folder: Path | None) -> None:
+    """Write what the readers found to ``import_issues.csv`` and summarise it; without a folder, print all of it."""
+    file = None if folder is None else folder / "import_issues.csv"
+    # An earlier run's list would be taken for this one's.
+    if folder is not None and file is not None and (issues or file.exists()):
+        from geofit.report.tables import write_issues
 
-    Errors come before warnings, and what was found seldom before what was found at every other row.
+        folder_for(folder)
+        write_issues(issues, file)
+    print_issues(issues, str(file or ""))
+
+
+def print_issues(issues: Sequence[ImportIssue], where: str = "") -> None:
+    """Summarise what the readers found on stderr: counts, and the first kinds of errors and warnings.
+
+    Errors come before warnings, and what was found seldom before what was found at every other row. Where nothing else
+    lists them, every error and warning is printed, and one of each kind of notes.
     """
     if not issues:
         return
     counts = {word: sum(issue.severity == word for issue in issues) for word in ("error", "warning", "note")}
     summary = ", ".join(f"{count} {word}{'s' * (count != 1)}" for word, count in counts.items() if count)
     say(f"Import: {summary}." + (f" All of them: {where}" if where else ""))
-    grave = [issue for issue in issues if issue.severity != "note"]
     kinds: dict[tuple[str, str, str], list[ImportIssue]] = {}
-    for issue in grave:
+    for issue in issues:
         kinds.setdefault((issue.severity, issue.file, issue.reason.code), []).append(issue)
-    ordered = sorted(kinds.values(), key=lambda alike: (alike[0].severity != "error", len(alike)))
-    for severity in ("error", "warning"):
+    ordered = sorted(kinds.values(), key=len)
+    for severity in ("error", "warning") if where else ("error", "warning", "note"):
         shown = [alike for alike in ordered if alike[0].severity == severity]
-        for alike in shown[:FIRST_ISSUES]:
+        if not where and severity != "note":
+            shown = [[issue] for alike in shown for issue in alike]
+        first = FIRST_ISSUES if where else len(shown)
+        for alike in shown[:first]:
             say("  " + _sentence(alike[0]) + (f" ({len(alike) - 1} more like it)" if len(alike) > 1 else ""))
-        if rest := sum(map(len, shown[FIRST_ISSUES:])):
+        if rest := sum(map(len, shown[first:])):
             say(f"  ... and {rest} more {severity}{'s' * (rest != 1)}.")
 
 

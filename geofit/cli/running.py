@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geofit.cli.console import print_counts, print_issues, print_json, print_results, say
+from geofit.cli.console import list_issues, print_counts, print_json, print_results, say
 
 if TYPE_CHECKING:
     from geofit.data.languages import Language
@@ -46,7 +46,7 @@ def run_site(
     from geofit.project.side_by_side import available
     from geofit.report.schema import failed_document, report_document
 
-    print_issues(site.issues, str(out / "import_issues.csv"))
+    list_issues(site.issues, out)
     print_counts(site.counts)
     result = run_horizons(
         site, out, horizons, changes, progress, language=language or EN, pdf=pdf, separate=separate, bands=bands,

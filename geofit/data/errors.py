@@ -49,7 +49,14 @@ class GeofitError(Exception):
     ----------
     message : Message
         What was given, what is needed, and what to do. ``str(error)`` is its English text.
+
+    Attributes
+    ----------
+    issues : tuple of ImportIssue
+        What the readers of the files had found until then: rows that are not used, guesses.
     """
+
+    issues: tuple[Any, ...] = ()
 
     def __init__(self, message: Message) -> None:
         super().__init__(message)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from geofit.caves.adjust import adjust_survey
+from geofit.caves.survey import SurveyError
 from geofit.data.errors import InputError
 from geofit.io.survex import read_survex
 
@@ -184,6 +185,16 @@ def test_walls_out_of_range_are_listed(svx, wall):
     (issue,) = found.issues
     assert (issue.severity, issue.row, issue.reason.code) == ("error", 3, "caves.wall-out-of-range")
     assert len(found.walls) == 1
+
+
+def test_a_survey_without_a_shot_says_why_and_lists_its_rows(svx):
+    with pytest.raises(SurveyError) as wrong:
+        svx("*data nosurvey from to\n1 2\n")
+    assert wrong.value.code == "caves.no-shot-because"
+    assert [issue.row for issue in wrong.value.issues] == [1, 2]
+    with pytest.raises(SurveyError) as empty:
+        svx("")
+    assert (empty.value.code, empty.value.issues) == ("caves.survey-without-shot", ())
 
 
 def test_an_end_names_its_own_block(svx):

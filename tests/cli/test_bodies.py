@@ -86,7 +86,7 @@ def test_body_from_a_collar_table_is_the_ellipsoid_that_was_drilled(drilled, mon
     assert "WARNING" in out
     assert "left-out error" in err
     assert sorted(path.name for path in (drilled / "o").iterdir()) == [
-        "ORE.json", "ORE.step", "ORE.stl", "ORE.stl.origin.txt", "ORE.vtp", "ORE_contacts.csv",
+        "ORE.json", "ORE.step", "ORE.stl", "ORE.stl.origin.txt", "ORE.vtp", "ORE_contacts.csv", "import_issues.csv",
     ]  # fmt: skip
     figures = json.loads((drilled / "o" / "ORE.json").read_text(encoding="utf-8"))
     assert [lamp["level"] for lamp in figures["lamps"]] == ["pass", "pass", "warning"]
@@ -102,6 +102,17 @@ def test_body_from_a_collar_table_is_the_ellipsoid_that_was_drilled(drilled, mon
     assert figures["sigma"] == pytest.approx(
         np.sqrt(sum(float(row["residual_m"]) ** 2 for row in rows) / (len(rows) - 1)), abs=1e-8
     )
+
+
+def test_body_lists_every_row_of_holes_that_it_does_not_use(drilled, monkeypatch, capsys):
+    with (drilled / "lithology.csv").open("a", encoding="utf-8") as stream:
+        stream.write("Z0_0,nan,5,ORE\nZ0_0,-5,0,ORE\nNOWHERE,1,2,ORE\nZ0_0,9,8,ORE\nZ0_0,7,7,ORE\nZ0_0,1,,ORE\n")
+    tables = (drilled / "collar.csv", "--intervals", drilled / "lithology.csv")
+    code, _, told = run(monkeypatch, capsys, "body", *tables, "--out", drilled / "o")
+    assert (code, "--code" in told) == (2, True)
+    listed = [row for row in read(drilled / "o" / "import_issues.csv") if row["severity"] == "error"]
+    assert len(listed) == 6
+    assert {row["file"] for row in listed} == {"lithology.csv"}
 
 
 def test_body_from_a_site_file_is_the_same(drilled, monkeypatch, capsys):
@@ -278,8 +289,8 @@ def test_cave_of_a_centre_line_is_a_cylinder_with_round_ends(tmp_path, monkeypat
     truth = np.pi * 4 * 50 + 4 / 3 * np.pi * 8
     assert figures["volume"]["volume"] == pytest.approx(truth, rel=0.02)
     assert figures["length"] == pytest.approx(50)
-    # Every station is fixed by its coordinates, so each shot closes between two of them, exactly.
-    assert max(loop["misclosure"] for loop in figures["loops"]) < 1e-9
+    # Every station is fixed by its coordinates, so no shot checks anything.
+    assert figures["loops"] == []
     assert figures["filled_walls"] == []
     assert len(read(tmp_path / "o" / "tunnel_stations.csv")) == 6
     assert (tmp_path / "o" / "tunnel.stl").stat().st_size > 10_000

@@ -354,10 +354,44 @@ def test_many_errors_do_not_hide_the_warnings(capsys):
         for i in range(7)
     ]
     far = message("test.far", "far off")
-    console.print_issues([*issues, ImportIssue("a.csv", 9, "x", "0", "warning", far, message("test.text", "x"))])
+    issues.append(ImportIssue("a.csv", 9, "x", "0", "warning", far, message("test.text", "x")))
+    console.print_issues(issues, "list.csv")
     told = capsys.readouterr().err
     assert "... and 2 more errors." in told
     assert "warning: a.csv, row 9, column 'x', value '0': far off" in told
+
+
+def test_what_no_file_lists_is_printed_in_full(capsys):
+    bad, guess = message("test.bad", "bad"), message("test.guess", "a guess")
+    issues = [ImportIssue("a.csv", row, "z", "?", "error", bad) for row in range(2, 22)]
+    console.list_issues([*issues, *(ImportIssue("a.csv", 0, c, "", "note", guess) for c in "xy")], None)
+    told = capsys.readouterr().err
+    assert all(f"row {row}, column 'z'" in told for row in range(2, 22))
+    assert "note: a.csv, column 'x': a guess. (1 more like it)" in told
+
+
+def test_an_error_comes_after_the_rows_that_are_its_reason(tmp_path, monkeypatch, capsys):
+    """A reader that found no usable row hands over what it listed; a stale list is replaced."""
+    survey, out = tmp_path / "dive.svx", tmp_path / "out"
+    survey.write_text("*data diving from to tape compass fromdepth todepth\n1 2 10 90 -1 -3\n", encoding="utf-8")
+    code, _, told = run(monkeypatch, capsys, "cave", survey, "--out", out)
+    assert code == 2
+    assert told.index("row 2, value '1 2 10 90 -1 -3'") < told.index("geofit: The survey dive.svx has no usable shot")
+    with (out / "import_issues.csv").open(encoding="utf-8-sig", newline="") as stream:
+        assert [row["row"] for row in csv.DictReader(stream)] == ["1", "2"]
+    survey.write_text("1 2 10 90 0\n", encoding="utf-8")
+    assert run(monkeypatch, capsys, "cave", survey, "--out", out, "--radius", "1", "--spacing", "1")[0] == 0
+    assert len((out / "import_issues.csv").read_text(encoding="utf-8").splitlines()) == 1
+
+
+def test_rows_are_listed_where_an_error_names_no_folder(tmp_path, monkeypatch, capsys):
+    (tmp_path / "p.csv").write_text("x,y,z\n1,2,a\n2,3,b\n", encoding="utf-8")
+    code, _, told = run(monkeypatch, capsys, "info", tmp_path / "p.csv")
+    assert code == 0
+    (tmp_path / "site.toml").write_text('[[horizon]]\nname = "T"\n[[picks]]\nfile = "p.csv"\nhorizon = "T"\n', "utf-8")
+    code, _, told = run(monkeypatch, capsys, "info", tmp_path / "site.toml")
+    assert code == 2
+    assert told.index("p.csv, row 3, column 'z'") < told.index("geofit: ")
 
 
 def test_info_says_what_tables_other_than_points_hold(tmp_path, monkeypatch, capsys):

@@ -73,6 +73,29 @@ def test_what_is_no_outline_is_listed(tmp_path):
     }
 
 
+@pytest.mark.parametrize(
+    ("draw", "code", "remedy"),
+    [
+        ("open", "io.other-on-layer", "io.close-or-explode"),
+        ("block", "io.other-on-layer", "io.close-or-explode"),
+        ("nothing", "io.no-outline-layer", "io.draw-closed-polylines"),
+    ],
+)
+def test_a_layer_without_a_closed_line_says_what_is_on_it(tmp_path, draw, code, remedy):
+    document = ezdxf.new("R2010")
+    corners = [(0, 0, 0), (9, 0, 0), (9, 9, 0)]
+    if draw == "open":
+        document.modelspace().add_polyline3d(corners, dxfattribs={"layer": "ORE"})
+    if draw == "block":
+        document.blocks.new("X").add_polyline3d(corners, close=True, dxfattribs={"layer": "ORE"})
+        document.modelspace().add_blockref("X", (0, 0, 0))
+    document.saveas(tmp_path / "ore.dxf")
+    with pytest.raises(InputError) as wrong:
+        read_outlines(tmp_path / "ore.dxf", ["ORE"])
+    assert (wrong.value.code, wrong.value.remedy.code) == (code, remedy)
+    assert len(wrong.value.issues) == (draw != "nothing")
+
+
 def test_one_plane_is_not_a_body(tmp_path):
     save(tmp_path / "a.dxf", [("S1", ring(0)), ("S2", ring(0, 3.0))])
     with pytest.raises(InputError, match="on 1 plane;"):

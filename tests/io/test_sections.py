@@ -71,6 +71,33 @@ def test_what_is_not_used_is_listed(drawing):
     assert severities.count("note") == 1
 
 
+def test_a_block_with_lines_of_a_horizon_is_an_error(drawing):
+    """Whatever the layer of the insert; lines on layer 0 are on that of the insert."""
+    space, save = drawing
+    space.add_lwpolyline([(0, 80), (1000, 81)], dxfattribs={"layer": "A"})
+    for name, layer in (("X", "A"), ("Y", "0")):
+        space.doc.blocks.new(name).add_lwpolyline([(0, 70), (1000, 71)], dxfattribs={"layer": layer})
+    space.doc.blocks.new("SYMBOL").add_circle((0, 0), 1, dxfattribs={"layer": "FRAME"})
+    space.add_blockref("X", (0, 0))
+    space.add_blockref("Y", (0, 0), dxfattribs={"layer": "B"})
+    space.add_blockref("SYMBOL", (0, 0))
+    _, journal = load(save())
+    found = [(issue.severity, issue.reason.params["reason"].code) for issue in journal.issues]
+    assert found == [
+        ("error", "io.block-not-read"), ("error", "io.block-not-read"), ("note", "io.layer-not-a-horizon"),
+    ]  # fmt: skip
+
+
+def test_lines_on_a_sheet_are_warned_of(drawing):
+    space, save = drawing
+    space.add_lwpolyline([(0, 80), (1000, 81)], dxfattribs={"layer": "A"})
+    space.doc.layout("Layout1").add_lwpolyline([(0, 80), (1000, 81)], dxfattribs={"layer": "B"})
+    _, journal = load(save())
+    (issue,) = journal.issues
+    assert (issue.severity, issue.reason.code) == ("warning", "io.paper-space-not-read")
+    assert issue.reason.params["layers"] == "B"
+
+
 def test_arcs_and_units_are_warned_of(drawing):
     space, save = drawing
     space.doc.header["$INSUNITS"] = 4

@@ -232,7 +232,8 @@ def test_warnings_are_shown_by_kind(capsys):
             *many,
             ImportIssue("a.csv", 7, "", "", "warning", message("test.grave", "grave")),
             ImportIssue("a.csv", 9, "", "", "error", message("test.bad", "bad")),
-        ]
+        ],
+        "list.csv",
     )
     lines = capsys.readouterr().err.splitlines()
     assert [line.split(":")[-1].strip() for line in lines[1:]] == ["bad.", "grave.", "dull 0. (279 more like it)"]
