@@ -35,7 +35,7 @@ class PickedPoints:
     issues: tuple[ImportIssue, ...]
 
 
-def read_body_points(path: str | PathLike[str]) -> PickedPoints:
+def read_body_points(path: str | PathLike[str], *, unit: str | None = None) -> PickedPoints:
     """Read a table of points on a body, with x, y, z, and where known nx, ny, nz and side.
 
     A row without a normal (empty, or a mark for "no data") is a contact all the same. ``side`` is contact, inside or
@@ -44,7 +44,9 @@ def read_body_points(path: str | PathLike[str]) -> PickedPoints:
     Parameters
     ----------
     path : path
-        A text table, or another of ``docs/formats_in.md``. Lengths are metres.
+        A text table, or another of ``docs/formats_in.md``.
+    unit : str, optional
+        Unit of all lengths, as :func:`geofit.io.read_points` takes it; else what headers mark, else metres.
 
     Raises
     ------
@@ -53,7 +55,7 @@ def read_body_points(path: str | PathLike[str]) -> PickedPoints:
     """
     journal = Journal()
     with journal.handed_over():
-        return _picked(Source(path=Path(path)), journal)
+        return _picked(Source(path=Path(path), unit=unit), journal)
 
 
 def _picked(source: Source, journal: Journal) -> PickedPoints:

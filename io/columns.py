@@ -56,21 +56,21 @@ def _spelled(words: str) -> tuple[str, ...]:
 _HOLE = _spelled(
     "hole holeid bhid holename holenumber holeno borehole boreholeid boreholename boreholeno drillhole dhid collarid "
     "locationid locaid pointid well wellid wellname bore boreid wellbore uwi "
-    "孔号 钻孔编号 钻孔号 钻孔 钻孔名称 孔名 勘探点编号 originalname id name 编号"
+    "孔号 钻孔编号 钻孔号 钻孔 钻孔名称 孔名 勘探点编号 bohrung originalname id name 编号"
 )
 _X = _spelled(
     "x east easting eastings locanate holenate xcollar collarx xcoord xcoordinate coordx locationx locx "
     "pointx utme utmeasting "
-    "e 坐标x x坐标 东坐标 东 东向坐标 横坐标"
+    "e 坐标x x坐标 东坐标 东 东向坐标 横坐标 rechtswert"
 )
 _Y = _spelled(
     "y north northing northings locanatn holenatn ycollar collary ycoord ycoordinate coordy locationy locy pointy utmn "
-    "utmnorthing n 坐标y y坐标 北坐标 北 北向坐标 纵坐标"
+    "utmnorthing n 坐标y y坐标 北坐标 北 北向坐标 纵坐标 hochwert"
 )
 _Z = _spelled(
     "z elevation elev locagl holegl zcollar collarz zcoord zcoordinate coordz rl altitude height level groundlevel gl "
     "groundelevation collarelevation surfaceelevation pointz msl "
-    "孔口高程 孔口标高 高程 标高 地面高程 坐标z z坐标 海拔"
+    "孔口高程 孔口标高 高程 标高 地面高程 坐标z z坐标 海拔 höhe hoehe"
 )
 _END = _spelled(
     "depth maxdepth locafdep holefdep totaldepth finaldepth enddepth eoh eohdepth td holedepth length holelength "

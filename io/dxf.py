@@ -127,6 +127,8 @@ def closed_lines(
 
     journal.read(source)
     factor = 1.0 if source.unit is None else metres_of(source.unit, source.name)
+    if source.unit is not None:
+        list_conversion(source.unit, ("x", "y", "z"), source.name, journal)
     found: list[ClosedLine] = []
     with _readable(source):
         document = _document(source)
@@ -238,7 +240,8 @@ def _warn_of_unit(unit: int, source: Source, journal: Journal, scale_stated: boo
             ),
             message(
                 "io.state-scale-or-unit",
-                "State scale = {scale:g} (a section), or unit (a map), where that is so.",
+                "Where that is so, state the unit (--unit of geofit body, unit in a site file) or, of a section, "
+                "scale = {scale:g}.",
                 scale=per_metre,
             ),
         )

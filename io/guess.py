@@ -425,8 +425,8 @@ def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
     on_ground = schema.name == "collar" and missing == ["z"]
     remedy = message(
         "io.name-column",
-        "Name the column in the header, or state columns = {{ {example} }} (--x, --y, --z, --surface, "
-        "--section for a bare CSV; a column's number counted from 1 will do).",
+        "Name the column in the header. A site or mapping file may state columns = {{ {example} }}, geofit fit and "
+        "check --x, --y, --z, --surface and --section; a column's number counted from 1 will do.",
         example=example,
     )
     ground = message("io.give-ground", "Or give the ground ([ground], a grid): collars are placed on it.")

@@ -21,6 +21,7 @@ from geofit.io.dxf import closed_lines
 from geofit.io.journal import Journal
 from geofit.io.section_outlines import site_outlines
 from geofit.io.source import Source
+from geofit.io.units import grid_unit
 
 __all__ = ["OUTLINE_ENDINGS", "DrawnOutlines", "read_outlines"]
 
@@ -52,7 +53,7 @@ class DrawnOutlines:
 Ring = tuple[str, Floats, str]
 
 
-def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> DrawnOutlines:
+def read_outlines(path: str | PathLike[str], layers: Collection[str] = (), *, unit: str | None = None) -> DrawnOutlines:
     """Read closed outlines at their true place: map coordinates and elevations, metres.
 
     Outlines that lie on one plane are those of one section, whatever their layers; a section is named after its layer,
@@ -66,6 +67,8 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> Dr
         sections and levels are read, each in its own coordinates.
     layers : collection of str
         Layers of the drawing, or names of sections; empty: all.
+    unit : str, optional
+        Unit of all lengths, as :func:`geofit.io.read_points` takes it; metres by default. A site file states its own.
 
     Raises
     ------
@@ -74,7 +77,7 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> Dr
     """
     journal = Journal()
     with journal.handed_over():
-        return _drawn(Source(path=Path(path)), layers, journal)
+        return _drawn(Source(path=Path(path), unit=unit), layers, journal)
 
 
 def _drawn(source: Source, layers: Collection[str], journal: Journal) -> DrawnOutlines:
@@ -82,9 +85,16 @@ def _drawn(source: Source, layers: Collection[str], journal: Journal) -> DrawnOu
         case ".dxf":
             rings = [(line.layer, line.xyz, "") for line in closed_lines(source, journal)]
         case ".toml":
+            if source.unit is not None:
+                raise InputError(
+                    message("io.site-states-units", "A site file states its own units"),
+                    message("io.leave-unit-out", "Leave the unit out, or state unit in [site]."),
+                    file=source.name,
+                )
             rings = site_outlines(source, journal)
         case ".geojson" | ".json":
-            rings = _features(source, journal)
+            factor = grid_unit(source, journal)
+            rings = [(layer, factor * ring, name) for layer, ring, name in _features(source, journal)]
         case ending:
             raise InputError(
                 message("io.outline-ending", "Outlines are not read from a file that ends in '{ending}'",

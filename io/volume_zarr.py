@@ -28,7 +28,7 @@ def open_zarr(path: Path, name: str | None) -> Any:
                     count=len(names),
                     names=", ".join(names[:8]),
                 ),
-                message("io.name-array", "State which one: name='...'."),
+                message("io.name-array", "Leave one in the file, or state which one in Python: name='...'."),
                 file=str(path),
             )
         node = node[names[0]]

@@ -217,6 +217,10 @@ def _one_of(names: list[str], wanted: str | None, path: Path) -> str:
             count=len(names),
             names=", ".join(sorted(names)[:8]),
         ),
-        message("io.name-volume", "State which one: name='{example}'.", example=sorted(names)[0]),
+        message(
+            "io.name-volume",
+            "Leave one in the file, or state which one in Python: name='{example}'.",
+            example=sorted(names)[0],
+        ),
         file=str(path),
     )

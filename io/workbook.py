@@ -160,14 +160,14 @@ def _filled_rows(values: Iterable[Sequence[Any]], file: str) -> list[tuple[int, 
     for line, row in enumerate(values, 1):
         if line > MOST_ROWS or cells_read > MOST_CELLS:
             raise InputError(
-                message(
-                    "io.sheet-too-large",
-                    "The sheet has more rows ({rows}) or cells ({cells}) than can be read; at most {most_rows} and "
-                    "{most_cells}",
-                    rows=line,
+                message("io.sheet-rows", "The sheet has more than {most} rows", most=MOST_ROWS)
+                if line > MOST_ROWS
+                else message(
+                    "io.sheet-cells",
+                    "The first {rows} rows of the sheet have {cells} cells; at most {most} can be read",
+                    rows=line - 1,
                     cells=cells_read,
-                    most_rows=MOST_ROWS,
-                    most_cells=MOST_CELLS,
+                    most=MOST_CELLS,
                 ),
                 message(
                     "io.remove-cells-beyond-table",

@@ -210,9 +210,9 @@ def _require_connected(survey: Survey, known: list[int]) -> None:
         raise SurveyError(
             message(
                 "caves.stations-not-connected",
-                "{count} stations of {survey} are not connected to station {anchor}: {names}. They form {parts} parts. "
-                "Add the missing shot or equate, correct a misspelt station name, fix one station of each part, or use "
-                "survey.connected_to('{anchor}') to leave them out.",
+                "{count} stations of {survey} are not connected to station {anchor}: {names}. Unconnected parts: "
+                "{parts}. Add the missing shot or equate, correct a misspelt station name, fix one station of each "
+                "part, or leave them out: remove their shots, in Python survey.connected_to('{anchor}').",
                 count=len(lost),
                 survey=Untranslated(survey.name),
                 anchor=Untranslated(survey.stations[known[0]]),

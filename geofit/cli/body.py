@@ -48,6 +48,13 @@ def body(
     intervals: Annotated[
         list[Path] | None, typer.Option(help="With a collar table: logged intervals; may be repeated.")
     ] = None,
+    unit: Annotated[
+        str | None,
+        typer.Option(
+            help="Unit of all lengths of tables, drawings and GeoJSON: m, ft, ft-us (US survey foot), km, cm, mm. "
+            "Default: as headers mark, else m."
+        ),
+    ] = None,
     epsilon: Annotated[float, typer.Option(help="Control error for sigma, m.")] = 0.5,
     author: Author = None,
     organisation: Organisation = None,
@@ -66,13 +73,14 @@ def body(
     settings, zero = BodySettings(epsilon=epsilon), read_origin(origin)
     title, page = None, lang.value if certificate else ""
     with listening() as progress:
-        drawn = _drawn(source, bool(code or survey or intervals), layer or [], settings)
+        drawn = _drawn(source, bool(code or survey or intervals), layer or [], settings, unit)
         if drawn is not None:
+            list_issues(drawn.issues, out)
             name = _name(source, layer or [])
             signed = signed_by(None, author, organisation, zero, certificate=page)
             run = run_body(drawn.data, out, name=name, settings=settings, progress=progress, signed=signed)
         else:
-            holes = _read(source, survey, intervals or [])
+            holes = _read(source, survey, intervals or [], unit)
             list_issues(holes.issues, out)
             print_counts(holes.counts)
             if not code:
@@ -101,7 +109,9 @@ def body(
     return run.exit_code
 
 
-def _drawn(source: Path, of_holes: bool, layers: list[str], settings: BodySettings) -> SourceData | None:
+def _drawn(
+    source: Path, of_holes: bool, layers: list[str], settings: BodySettings, unit: str | None
+) -> SourceData | None:
     """Read outlines or points; None: the source is of boreholes."""
     from geofit.io.outlines import OUTLINE_ENDINGS
     from geofit.project.body_record import Outlines, SurfacePicks
@@ -116,10 +126,10 @@ def _drawn(source: Path, of_holes: bool, layers: list[str], settings: BodySettin
             file=str(source),
         )
     if outlined:
-        return read_body_source(Outlines(source.name, tuple(layers)), settings, (), source.parent)
+        return read_body_source(Outlines(source.name, tuple(layers)), settings, (), source.parent, unit=unit)
     if of_holes or ending == ".toml":
         return None
-    return read_body_source(SurfacePicks(source.name), settings, (), source.parent)
+    return read_body_source(SurfacePicks(source.name), settings, (), source.parent, unit=unit)
 
 
 def _name(source: Path, layers: list[str]) -> str:
@@ -127,9 +137,10 @@ def _name(source: Path, layers: list[str]) -> str:
     return "+".join(layers) if source.suffix.casefold() == ".toml" else source.stem
 
 
-def _read(source: Path, survey: Path | None, intervals: list[Path]) -> Boreholes | Site:
+def _read(source: Path, survey: Path | None, intervals: list[Path], unit: str | None) -> Boreholes | Site:
     if source.suffix.casefold() != ".toml":
         from geofit.io.boreholes import read_boreholes
+        from geofit.io.source import Source
 
         if not intervals:
             raise InputError(
@@ -137,7 +148,15 @@ def _read(source: Path, survey: Path | None, intervals: list[Path]) -> Boreholes
                 message("cli.give-intervals", "Give the tables of intervals with --intervals."),
                 file=str(source),
             )
-        return read_boreholes(source, survey, intervals)
+        tables = [Source(path=path, unit=unit) for path in (source, *intervals)]
+        along = None if survey is None else Source(path=survey, unit=unit)
+        return read_boreholes(tables[0], along, tables[1:])
+    if unit is not None:
+        raise InputError(
+            message("cli.unit-of-site", "--unit is not for a site file"),
+            message("cli.state-unit-in-site", "A site file states unit in [site]."),
+            file=str(source),
+        )
     if survey is not None or intervals:
         raise InputError(
             message("cli.options-for-collars", "--survey and --intervals are for a table of collars"),
@@ -167,7 +186,7 @@ def _no_code(source: Path, holes: Boreholes | Site) -> InputError:
 
 def _print_issues(run: BodyRun) -> None:
     kinds: dict[tuple[str, bool], list[Message]] = {}
-    for issue in run.body.issues:
+    for issue in (one for one in run.body.issues if one.kind != "file"):
         kinds.setdefault((issue.kind, issue.used), []).append(issue.text)
     for (_, used), texts in sorted(kinds.items(), key=lambda kind: kind[0][1]):
         more = f" ({len(texts) - 1} more like it in the JSON file)" if len(texts) > 1 else ""

@@ -114,7 +114,7 @@ def refuse_far(xyz: NDArray[np.float64]) -> None:
         raise PointsError(
             message(
                 "data.coordinate-too-large",
-                "A coordinate is {farthest:.3g} m; at most {largest:.0e} m are measured. Check the unit and the "
+                "A coordinate is {farthest:.10g} m; at most {largest:.0f} m are possible. Check the unit and the "
                 "columns.",
                 farthest=farthest,
                 largest=LARGEST,

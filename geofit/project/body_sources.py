@@ -34,11 +34,12 @@ __all__ = [
 
 @dataclass(frozen=True, eq=False)
 class SourceData:
-    """What a source holds: data for a fit, a hash of what it held, and the outlines if there are any."""
+    """What a source holds: data for a fit, a hash of what it held, outlines if there are any, issues of its reader."""
 
     data: BodyData
     given: str
     outlines: tuple[Outline, ...] = ()
+    issues: tuple[ImportIssue, ...] = ()
 
 
 def read_body_source(
@@ -47,6 +48,8 @@ def read_body_source(
     campaigns: Sequence[Any],
     folder: Path,
     progress: Progress | None = None,
+    *,
+    unit: str | None = None,
 ) -> SourceData:
     """Read what a body is fitted to; what a file has and the fit does not use is among the issues of the data.
 
@@ -60,6 +63,8 @@ def read_body_source(
         Boreholes with logs of the open site.
     folder : Path
         Folder of the open site.
+    unit : str, optional
+        Unit of all lengths of a file of outlines or points; else what it marks, else metres.
 
     Raises
     ------
@@ -76,14 +81,16 @@ def read_body_source(
             from geofit.bodies.outlines import from_outlines
             from geofit.io.outlines import read_outlines
 
-            drawn = read_outlines(folder / file, layers)
+            drawn = read_outlines(folder / file, layers, unit=unit)
             data = from_outlines(drawn.outlines, settings.step)
-            return SourceData(_with_issues(data, drawn.issues), _given_of(drawn.inputs), drawn.outlines)
+            return SourceData(_with_issues(data, drawn.issues), _given_of(drawn.inputs), drawn.outlines, drawn.issues)
         case SurfacePicks(file):
             from geofit.io.body_points import read_body_points
 
-            picked = read_body_points(folder / file)
-            return SourceData(_with_issues(picked.data, picked.issues), file_digest(folder / file))
+            picked = read_body_points(folder / file, unit=unit)
+            return SourceData(
+                _with_issues(picked.data, picked.issues), file_digest(folder / file), issues=picked.issues
+            )
 
 
 def outline_layers(file: Path, *, progress: Progress | None = None) -> dict[str, int]:

@@ -115,6 +115,26 @@ def test_body_lists_every_row_of_holes_that_it_does_not_use(drilled, monkeypatch
     assert {row["file"] for row in listed} == {"lithology.csv"}
 
 
+def test_body_of_a_drawing_in_feet_takes_its_unit(tmp_path, monkeypatch, capsys):
+    import ezdxf
+
+    document = ezdxf.new("R2010", units=ezdxf.units.FT)
+    angle = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    for across in (-40.0, -20.0, 0.0, 20.0, 40.0):
+        share = np.sqrt(1 - (across / 60) ** 2)
+        lens = np.column_stack([45 * share * np.cos(angle), np.full(48, across), 30 * share * np.sin(angle)])
+        document.modelspace().add_polyline3d((lens / 0.3048).tolist(), close=True, dxfattribs={"layer": "ORE"})
+    document.saveas(tmp_path / "ore.dxf")
+    drawn, out = tmp_path / "ore.dxf", tmp_path / "o"
+    code, told, err = run(monkeypatch, capsys, "body", drawn, "--unit", "ft", "--out", out, "--json")
+    assert code == 0, err
+    assert json.loads(told)["volumes"]["best"] == pytest.approx(4 / 3 * np.pi * 60 * 45 * 30, rel=0.03)
+    (tmp_path / "site.toml").write_text("[site]\n", "utf-8")
+    site, given = tmp_path / "site.toml", ("--unit", "ft", "--code", "ORE", "--out", out)
+    code, _, err = run(monkeypatch, capsys, "body", site, *given)
+    assert (code, "[site]" in err) == (2, True)
+
+
 def test_body_from_a_site_file_is_the_same(drilled, monkeypatch, capsys):
     (drilled / "site.toml").write_text(
         '[site]\nname = "Mine"\n[boreholes]\ncollar = "collar.csv"\nintervals = ["lithology.csv"]\n', encoding="utf-8"

@@ -29,6 +29,7 @@ def find(path, schema, **stated):
         (columns.COLLAR, "hole_ID, X (m), Y [m], Z_m, Total Depth (m)"),
         (columns.COLLAR, "钻孔编号,坐标X,坐标Y,孔口高程,终孔深度"),
         (columns.COLLAR, "孔号,X坐标(m),Y坐标(m),孔口标高（m）,孔深(m)"),
+        (columns.COLLAR, "Bohrung,Rechtswert,Hochwert,Höhe,Depth"),
         (columns.SURVEY, "BHID,AT,BRG,DIP"),
         (columns.SURVEY, "孔号,测点深度,方位角(°),倾角(°)"),
         (columns.INTERVALS, "hole_ID,depth_from,to_depth,rock code"),

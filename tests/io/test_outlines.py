@@ -96,9 +96,32 @@ def test_a_layer_without_a_closed_line_says_what_is_on_it(tmp_path, draw, code, 
     assert len(wrong.value.issues) == (draw != "nothing")
 
 
+def test_a_unit_that_a_drawing_states_is_warned_of_until_it_is_given(tmp_path):
+    document = ezdxf.new("R2010", units=ezdxf.units.FT)
+    for x in (0.0, 10.0):
+        document.modelspace().add_polyline3d(ring(x).tolist(), close=True, dxfattribs={"layer": "ORE"})
+    document.saveas(tmp_path / "ore.dxf")
+    ignored, read = read_outlines(tmp_path / "ore.dxf"), read_outlines(tmp_path / "ore.dxf", unit="ft")
+    assert [(issue.severity, issue.reason.code) for issue in ignored.issues] == [("warning", "io.drawing-unit-ignored")]
+    assert [(issue.severity, issue.reason.code) for issue in read.issues] == [("note", "io.stated-unit-converted")]
+    np.testing.assert_allclose(read.outlines[1].xyz, 0.3048 * ignored.outlines[1].xyz)
+
+
+def test_the_unit_of_geojson_and_points_is_given_and_that_of_a_site_file_is_its_own(tmp_path):
+    (tmp_path / "ore.geojson").write_text(features(*(({}, "LineString", closed(ring(x))) for x in (0, 10))), "utf-8")
+    metres, feet = (read_outlines(tmp_path / "ore.geojson", unit=unit) for unit in (None, "ft"))
+    np.testing.assert_allclose(feet.outlines[0].xyz, 0.3048 * metres.outlines[0].xyz)
+    (tmp_path / "p.csv").write_text("x,y,z\n1,2,3\n4,5,6\n", "utf-8")
+    np.testing.assert_allclose(read_body_points(tmp_path / "p.csv", unit="km").data.contacts[0], [1000, 2000, 3000])
+    (tmp_path / "site.toml").write_text("[site]\n", "utf-8")
+    with pytest.raises(InputError) as wrong:
+        read_outlines(tmp_path / "site.toml", ["ORE"], unit="ft")
+    assert wrong.value.code == "io.site-states-units"
+
+
 def test_one_plane_is_not_a_body(tmp_path):
     save(tmp_path / "a.dxf", [("S1", ring(0)), ("S2", ring(0, 3.0))])
-    with pytest.raises(InputError, match="on 1 plane;"):
+    with pytest.raises(InputError, match="1 plane;"):
         read_outlines(tmp_path / "a.dxf")
 
 
