@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.caves.sweep_loops import paint_sweeps
+from geofit.caves.sweep_loops import extremes, paint_sweeps
 from geofit.caves.sweeps import Sweeps
 
 __all__ = ["Columns", "columns"]
 
 Floats = NDArray[np.float64]
 
-#: Nodes of a slab at most: four arrays of this size are held.
-NODES = 8_000_000
+#: Nodes of a tile at most: four arrays of this size are held; and nodes along its sides in plan.
+NODES, TILE = 8_000_000, 96
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,19 +59,51 @@ def columns(sweeps: Sweeps, blend: float, boxes: tuple[Floats, Floats], spacing:
     low, high = boxes[0].min(axis=0), boxes[1].max(axis=0)
     origin = low - 1.5 * spacing
     nx, ny, nz = (np.ceil((high - origin) / spacing) + 2).astype(int).tolist()
-    # Slabs overlap by two layers: a cell needs its neighbours.
-    thick = max(1, NODES // (ny * nz) - 2)
-    found: list[tuple[Floats, ...]] = []
-    for first in range(1, nx - 1, thick):
-        # Tall and wide caves: a slab of one layer is cut along y as well.
-        wide = max(1, NODES // (3 * nz) - 2)
+    # Most of the plan of a cave is rock: only tiles that a passage comes near are painted.
+    wide = max(1, min(TILE, int(np.sqrt(NODES / nz)) - 2))
+    found: list[tuple[Floats, ...]] = [(np.zeros(0),) * 5]
+    for first in range(1, nx - 1, wide):
         for side in range(1, ny - 1, wide):
+            # Tiles overlap by two layers: a cell needs its neighbours.
             start = origin + spacing * np.array([first - 1.0, side - 1.0, 0.0])
-            shape = (min(thick, nx - 1 - first) + 2, min(wide, ny - 1 - side) + 2, nz)
-            share = _shares()(paint_sweeps(sweeps, blend, boxes, start, spacing, shape), spacing)
-            found.append(_intervals(share, start, spacing))
-    x, y, bottom, top, part = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    return Columns(x, y, bottom, top, part, spacing)
+            shape = (min(wide, nx - 1 - first) + 2, min(wide, ny - 1 - side) + 2, nz)
+            near, inside = _near(sweeps, blend, boxes, start, spacing, shape)
+            if len(near.length):
+                # Nor is the height of all others that of this tile.
+                bottom = max(0, int((inside[0][:, 2].min() - start[2]) // spacing) - 3)
+                top = min(nz, int((inside[1][:, 2].max() - start[2]) // spacing) + 5)
+                start[2] += bottom * spacing
+                shape = (*shape[:2], top - bottom)
+                share = _shares()(paint_sweeps(near, blend, inside, start, spacing, shape), spacing)
+                found.append(_intervals(share, start, spacing))
+    x, y, below, above, part = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    return Columns(x, y, below, above, part, spacing)
+
+
+def _near(
+    sweeps: Sweeps, blend: float, boxes: tuple[Floats, Floats], start: Floats, spacing: float, shape: tuple[int, ...]
+) -> tuple[Sweeps, tuple[Floats, Floats]]:
+    """Return the sweeps that come near a tile, and the boxes of their parts there: a long one may only cross it."""
+    low, high = start[:2], start[:2] + spacing * (np.array(shape[:2]) - 1)
+    close = np.flatnonzero(
+        ((boxes[0][:, :2] <= high + 2 * spacing) & (boxes[1][:, :2] >= low - 2 * spacing)).all(axis=1)
+    )
+    origin, way = sweeps.origin[close], sweeps.length[close, None] * sweeps.along[close]
+    reach = (extremes(sweeps)[0][close] + blend + 4 * spacing)[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = np.sort(
+            [(low - reach - origin[:, :2]) / way[:, :2], (high + reach - origin[:, :2]) / way[:, :2]], axis=0
+        )
+    # A direction without a component along an axis never leaves the tile, whose box it is in.
+    ends[:, way[:, :2] == 0] = [[-np.inf], [np.inf]]
+    begin, end = np.clip(ends[0].max(axis=1), 0, 1), np.clip(ends[1].min(axis=1), 0, 1)
+    crosses = ends[0].max(axis=1) <= ends[1].min(axis=1)
+    a, b = origin + begin[:, None] * way, origin + end[:, None] * way
+    inside = (
+        np.maximum(np.minimum(a, b) - reach, boxes[0][close])[crosses],
+        np.minimum(np.maximum(a, b) + reach, boxes[1][close])[crosses],
+    )
+    return sweeps.chosen(close[crosses]), inside
 
 
 def _intervals(share: Floats, corner: Floats, spacing: float) -> tuple[Floats, ...]:

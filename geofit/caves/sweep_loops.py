@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from geofit.caves.sweeps import Sweeps
 
-__all__ = ["SweepCells", "paint_sweeps", "ranges"]
+__all__ = ["SweepCells", "extremes", "paint_sweeps", "ranges"]
 
 Floats = NDArray[np.float64]
 
@@ -23,7 +23,7 @@ def _arrays(sweeps: Sweeps) -> tuple[Any, ...]:
     return s.origin, s.along, s.right, s.up, s.length, s.walls, s.cap
 
 
-def _extremes(sweeps: Sweeps) -> tuple[Floats, Floats]:
+def extremes(sweeps: Sweeps) -> tuple[Floats, Floats]:
     """Return the largest and smallest semi-axis (k,), (k,) of each sweep; 0 where an end is flat."""
     most = np.maximum(sweeps.walls.max(axis=(1, 2)), sweeps.cap.max(axis=1))
     return most, np.minimum(sweeps.walls.min(axis=(1, 2)), sweeps.cap.min(axis=1))
@@ -44,7 +44,7 @@ class SweepCells:
 
     def __init__(self, sweeps: Sweeps, blend: float, bounds: tuple[Floats, Floats]) -> None:
         self.sweeps, self.blend = sweeps, blend
-        most, least = _extremes(sweeps)
+        most, least = extremes(sweeps)
         size = bounds[1] - bounds[0]
         self.width = float(max(np.median(most) / 2, (size.prod() / CELLS) ** (1 / 3)))
         self.corner = bounds[0] - self.width
@@ -64,7 +64,7 @@ class SweepCells:
 def ranges(sweeps: Sweeps, blend: float, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
     """Return bounds (k,), (k,) of the field in boxes with corners (k, 3)."""
     low, high = np.empty(len(lower)), np.empty(len(lower))
-    _loops()[2](lower, upper, sweeps.origin, sweeps.along, sweeps.length, *_extremes(sweeps), blend, low, high)
+    _loops()[2](lower, upper, sweeps.origin, sweeps.along, sweeps.length, *extremes(sweeps), blend, low, high)
     return low, high
 
 
@@ -77,7 +77,7 @@ def paint_sweeps(
     first = np.maximum(np.floor((boxes[0] - origin) / spacing).astype(np.int64) - 2, 0)
     last = np.minimum(np.ceil((boxes[1] - origin) / spacing).astype(np.int64) + 2, np.array(shape) - 1)
     # Beyond this distance from the axis a node is outside, has no neighbour inside, and does not blend.
-    far = _extremes(sweeps)[0] + blend + 2 * spacing
+    far = extremes(sweeps)[0] + blend + 2 * spacing
     _loops()[3](first, last, origin, spacing, *_arrays(sweeps), sweeps.branch, far, best, second, owner)
     if blend > 0:
         near = second < best + blend

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,10 @@ class Sweeps:
     walls: Floats
     cap: Floats
     branch: Ints
+
+    def chosen(self, index: Ints) -> Sweeps:
+        """Return some of the sweeps, by their numbers."""
+        return Sweeps(*(getattr(self, one.name)[index] for one in fields(self)))
 
     @property
     def volumes(self) -> Floats:

@@ -8,6 +8,7 @@ from cave_surveys import chain, network
 
 from geofit.caves.body import PassageBody, centreline_body
 from geofit.caves.shots import ShotList
+from geofit.caves.sweep_loops import paint_sweeps
 from geofit.data.errors import SettingsError
 from geofit.implicit.field import Field, RangedField
 
@@ -122,6 +123,30 @@ def test_slabs_of_any_size_add_up_to_the_same_volume(monkeypatch):
     for nodes in (3_000, 200_000):
         monkeypatch.setattr("geofit.caves.columns.NODES", nodes)
         assert body.volume(0.5) == pytest.approx(whole, rel=1e-12)
+
+
+@pytest.mark.parametrize("points", [LINE, [[0, 0, 0], [0, 0, 50], [40, 0, 50]], [[0, 0, 0], [90, 70, 8], [0, 150, 30]]])
+def test_tiles_give_the_volume_of_one_lattice(monkeypatch, points):
+    body = centreline_body(chain(points, 2.0))
+    tiled = [body.volume(0.5)]
+    for tile in (7, 100_000):
+        monkeypatch.setattr("geofit.caves.columns.TILE", tile)
+        tiled.append(body.volume(0.5))
+    np.testing.assert_allclose(tiled, tiled[0], rtol=1e-12)
+
+
+def test_the_rock_that_no_passage_comes_near_costs_nothing(monkeypatch):
+    """A shot of 1.4 km at 45 degrees: its box has 650 million nodes."""
+    painted = []
+
+    def counted(sweeps, blend, boxes, origin, spacing, shape):
+        painted.append(np.prod(shape))
+        return paint_sweeps(sweeps, blend, boxes, origin, spacing, shape)
+
+    monkeypatch.setattr("geofit.caves.columns.paint_sweeps", counted)
+    body = centreline_body(chain([[0, 0, 0], [1000, 1000, 0]], 1.0))
+    assert body.volume() == pytest.approx(body.sweeps.volumes[0], rel=0.01)
+    assert sum(painted) < 4e7
 
 
 def test_coarse_and_fine_lattices_agree_on_branching_passages():
