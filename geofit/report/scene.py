@@ -16,11 +16,9 @@ from geofit.data.errors import MissingDependencyError
 from geofit.data.messages import Message, message
 from geofit.data.site import Hole
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.geometry.elevation import plan_map
 from geofit.report.result import HorizonResult
 from geofit.report.style import HORIZONS, kind_style
 from geofit.report.view import rims, trimmed
-from geofit.splines.patch import Patch
 
 if TYPE_CHECKING:
     import pyvista
@@ -98,6 +96,7 @@ def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -
     raised = _raised([surface])
     place = _Place(surface.origin, raised)
     mesh = _mesh(surface, place)
+    # Beside a point far beyond the outline no place of the mesh may lie within it.
     z = np.asarray(mesh["elevation"]) if mesh.n_points else surface.points.xyz[:, 2]
     limits = (float(z.min()), max(float(z.max()), float(z.min()) + 1e-3))
     _add_surface(plotter, mesh, cmap=elevation_colours(), clim=limits, scalars="elevation")
@@ -276,7 +275,7 @@ def _mesh(surface: HorizonFit, place: _Place) -> pyvista.PolyData:
     triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
     points = []
     for patch in surface.patches:
-        u0, u1, v0, v1 = _drawn(patch, surface)
+        u0, u1, v0, v1 = patch.domain
         points.append(patch.evaluate(u0 + share[:, None] * (u1 - u0), v0 + share[None] * (v1 - v0)).reshape(-1, 3))
     true = np.concatenate(points) + surface.origin
     faces = (np.arange(len(points))[:, None, None] * STEPS**2 + triangles).reshape(-1, 3)
@@ -286,17 +285,6 @@ def _mesh(surface: HorizonFit, place: _Place) -> pyvista.PolyData:
         mesh["inside"] = np.clip(trimmed(surface, true[:, 0], true[:, 1]), -1e6, 1e6)
         mesh = mesh.clip_scalar(scalars="inside", value=0.0, invert=False)
     return mesh
-
-
-def _drawn(patch: Patch, surface: HorizonFit) -> tuple[float, float, float, float]:
-    """Return the parameters between which a patch is drawn: beside one far point it may lie far beyond the outline."""
-    u0, u1, v0, v1 = patch.domain
-    plan = plan_map(patch)
-    if surface.outline is None or plan is None:
-        return u0, u1, v0, v1
-    u, v = plan.parameters((surface.outline - surface.origin[:2]).T)
-    drawn = max(u0, u.min()), min(u1, u.max()), max(v0, v.min()), min(v1, v.max())
-    return drawn if drawn[0] < drawn[1] and drawn[2] < drawn[3] else (u0, u1, v0, v1)
 
 
 def _add_surface(plotter: pyvista.Plotter, mesh: pyvista.PolyData, **style: Any) -> None:
