@@ -289,7 +289,8 @@ _TRIES = (
         "many points 2 a side of the area",
         "192 sites of eight truths and six arrangements: within the hull 0.89, bowls 0.42 (0.02 and 0.05: 0.89 and "
         "0.88, one bowl 7.5 times as large and none; 0.15, 96 of them: 0.92); 96 sites not used here: 0.93, bowls "
-        "0.61, worst 1.7; 100 sites of this page, not those of the tables: core, GM 0.976, whole 1.000; 24 real lines 1.000",
+        "0.61, worst 1.7; 100 sites of this page, not those of the tables: core, GM 0.976, whole 1.000; 24 real lines "
+        "1.000",
         "yes",
     ),
     (
@@ -299,7 +300,8 @@ _TRIES = (
         "no",
     ),
     (
-        "shorter spans for Matérn 5 only where the points gain 0.04 each, -2 log of the likelihood, instead of 10 in all",
+        "shorter spans for Matérn 5 only where the points gain 0.04 each, -2 log of the likelihood, instead of 10 in "
+        "all",
         "10,000 points, half of them in a core: 2,304 instead of 13,225 control points, 0.5 instead of 6.7 s, 0.0215 "
         "instead of 0.0187 m; 0.02: 3,782, 1.0 s, 0.0197 m; 60 sites of this page: core, GM 1.005, whole 1.001",
         "yes",
