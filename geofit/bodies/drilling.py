@@ -30,7 +30,8 @@ class SuggestedHole:
     """A hole that narrows the volume, and what it is predicted to meet.
 
     ``azimuth`` clockwise from grid north and ``dip`` below the horizontal are in degrees; ``sd_before`` and
-    ``sd_after`` are standard deviations of the body's volume, m3, before and after this hole and those before it.
+    ``sd_after`` are standard deviations of the body's volume, m3, before and after this hole and those before it,
+    without the numerical error of the volume, which no hole narrows.
     """
 
     hole: PlannedHole

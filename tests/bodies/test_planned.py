@@ -77,8 +77,10 @@ def test_suggested_holes_narrow_the_volume_more_than_holes_elsewhere() -> None:
         assert suggested[0].sd_before > suggested[0].sd_after == suggested[1].sd_before > suggested[1].sd_after
         collar = (suggested[0].hole.collar - ORIGIN) / SIZE
         predicted.append(suggested[0].sd_after / suggested[0].sd_before)
-        before = body.volumes().sd
-        assert suggested[0].sd_before == pytest.approx(before, rel=1e-9)
+        volumes = body.volumes()
+        before = volumes.sd
+        # No hole narrows the numerical error.
+        assert np.hypot(suggested[0].sd_before, volumes.error) == pytest.approx(before, rel=1e-9)
         chosen.append(fit_body(with_hole(data, truth, collar[:2])).volumes().sd / before)
         place = np.random.default_rng(seed).uniform(-1, 1, 2) * [0.6, 0.4]
         elsewhere.append(fit_body(with_hole(data, truth, place)).volumes().sd / before)
