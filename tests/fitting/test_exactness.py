@@ -130,7 +130,7 @@ def test_a_boundary_from_a_program_is_checked_as_that_of_a_file(boundary, words)
 
 
 def test_coordinates_beyond_the_digits_of_a_double_are_refused():
-    with pytest.raises(PointsError, match="at most 1e"):
+    with pytest.raises(PointsError, match="at most 1000000000 m"):
         fit_horizon(cloud(shift=1e10))
 
 

@@ -111,7 +111,6 @@ def test_a_point_far_away_costs_no_picture(result):
     far = np.concatenate([xyz, [[0.5, 0.7, ORIGIN[2]]]])
     boundary = np.array([[0, 0], [1000, 0], [1000, 1000], [0, 1000]]) + ORIGIN[:2]
     surface = geofit.fit_horizon(PointSet(far), FitSettings(), boundary).ended_at(boundary)
-    assert not scene._mesh(surface, scene._Place(surface.origin, 1)).n_points
     assert scene.horizon_scene(replace(result, surface=surface)).image.size
 
 
