@@ -197,12 +197,8 @@ def cloud(seed: int, n: int, noise: float = 0.05) -> tuple[PointSet, Height]:
 
 
 def scattered(counts: list[int]) -> None:
-    print(
-        f"scattered points, half in a dense core, noise 0.05 m, beside P-splines of {SPANS} x {SPANS} spans, one whose"
-    )
-    print(
-        f"penalty is given and one that searches it; seconds of the processor, median of {FITS} fits after a first one"
-    )
+    print(f"scattered points, half in a dense core, noise 0.05 m; P-splines of {SPANS} x {SPANS} spans, with a given")
+    print(f"penalty and with a searched one; processor seconds, median of {FITS} fits after a first one")
     print(f"{'':10s}{'n':>8s}{'error':>9s}{'worst':>8s}{'s':>7s}{'ratio':>7s}{'numbers':>9s}")
     at = places(AREA, 10_000)
     for n in counts:

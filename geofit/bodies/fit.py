@@ -224,7 +224,7 @@ def _buried(inside: NDArray[np.bool_], corners: Sequence[tuple[NDArray[np.int64]
         for end in (0, -1):
             around[np.unique(np.take(parts, end, axis))] = True
     around[0] = False
-    beside = np.any([around[parts[at]] for at in corners], axis=0)
+    outer = np.any([around[parts[at]] for at in corners], axis=0)
     cavity = np.any([(parts[at] > 0) & ~around[parts[at]] for at in corners], axis=0)
-    shown = int((beside | cavity).sum())
-    return float((cavity & ~beside).sum() / shown) if shown else 0.0
+    shown = int((outer | cavity).sum())
+    return float((cavity & ~outer).sum() / shown) if shown else 0.0

@@ -30,7 +30,7 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
     if isinstance(given, np.ndarray) and _fixed(given, np.float64) and given.ndim == 2 and given.shape[1] == 3:
         return given
     if isinstance(given, np.ma.MaskedArray):
-        # What is masked is not known, whatever number stands there.
+        # A masked value is missing, whatever number it hides.
         given = np.ma.filled(given.astype(np.float64), np.nan)
     try:
         if np.iscomplexobj(given):

@@ -147,6 +147,7 @@ class Likelihood:
         self.floor = n * self.columns.shape[1] * FINEST**2
         spans = [np.diff(np.unique(knots)) for knots in (space.knots_u, space.knots_v)]
         span = math.sqrt(float(np.median(spans[0])) * float(np.median(spans[1])))
+        # The spans that grow lie beyond the area.
         side = math.sqrt(math.prod(float((part < 1.5 * np.median(part)).sum() * np.median(part)) for part in spans))
         curved = self.precision.power * min(CURVED, ACROSS / side)
         least = math.log(curved) if alpha > 2 else LOG_KAPPA[0]

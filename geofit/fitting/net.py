@@ -398,15 +398,15 @@ class Periphery:
                 "neighbours nearer to each other than the knots contradict each other there (strict meets them where "
                 "knots allow, and the surface swings between them)",
             )
-        few = crowded(base, self.data.plane) if self.field.contradictory or released else None
-        if few is not None:
+        close = crowded(base, self.data.plane) if self.field.contradictory or released else None
+        if close is not None:
             reason = message(
                 "fitting.area-far-wider",
                 "nine tenths of the points lie within {extent:.0f} m, of a study area so wide that its control points "
                 "stand {span:.0f} m apart; draw the area around the points, or check the points farthest from the "
                 "others",
-                extent=few[0] * self.data.unit,
-                span=few[1] * self.data.unit,
+                extent=close[0] * self.data.unit,
+                span=close[1] * self.data.unit,
             )
         elif self.field.contradictory:
             noise = self.field.noise

@@ -332,7 +332,7 @@ def require_rock(volume: RockVolume | SlicedVolume) -> None:
     Raises
     ------
     VolumeError
-        If there is no rock voxel.
+        If all voxels are pore.
     """
     if volume.porosity == 1:
         raise VolumeError(

@@ -96,7 +96,7 @@ def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -
     raised = _raised([surface])
     place = _Place(surface.origin, raised)
     mesh = _mesh(surface, place)
-    # Beside a point far beyond the outline no place of the mesh may lie within it.
+    # If one point lies far beyond the outline, the mesh may be too coarse to have a vertex within it.
     z = np.asarray(mesh["elevation"]) if mesh.n_points else surface.points.xyz[:, 2]
     limits = (float(z.min()), max(float(z.max()), float(z.min()) + 1e-3))
     _add_surface(plotter, mesh, cmap=elevation_colours(), clim=limits, scalars="elevation")

@@ -1,4 +1,4 @@
-"""Normals that point inwards, and inside and outside exchanged, are no body: a check fails and says so."""
+"""A body whose normals point inwards, or whose inside and outside are exchanged, fails a check that says so."""
 
 from __future__ import annotations
 
