@@ -10,9 +10,8 @@ The field is solved on a space that reaches beyond the study area, where no data
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,18 +20,17 @@ from numpy.typing import NDArray
 from geofit.data.errors import FitError
 from geofit.data.long_arrays import BLOCK, Rows, blocks, covariance, everywhere, inverse_squares, spread, sum_squares
 from geofit.data.messages import message
-from geofit.fitting.likelihood import FINEST, UNSOLVABLE, Likelihood, Optimum, Slope, plane_coefficients
-from geofit.fitting.optimum import EVERY, maximize, maximize_over_noise
+from geofit.fitting.likelihood import FINEST, UNSOLVABLE, Likelihood, Slope, plane_coefficients
+from geofit.fitting.optimum import maximize_over_noise
 from geofit.fitting.slopes import Slopes
+from geofit.fitting.smoothness import ENOUGH, as_smooth, search
 from geofit.splines import bspline
 from geofit.splines.matern import MaternPrecision
 from geofit.splines.tensor import Factor, TensorSpace, band_sum
 
 __all__ = [
-    "ENOUGH",
     "FieldChoice",
     "Smoothed",
-    "as_smooth",
     "choose_covariance",
     "drift_of",
     "held_planes",
@@ -50,17 +48,11 @@ Floats = NDArray[np.float64]
 
 #: Noise above this share of the values' own spread contradicts any tolerance below it.
 CONTRADICTION = 0.5
-#: Fewer points than these cannot tell noise from relief, nor one direction from another.
-ENOUGH = 16
 #: Standard deviation across a strip, in units of the spacing, below which it counts as a line.
 _NARROW = 0.05
 #: How far the field's space reaches beyond the area, in units, and how fast its spans grow there. Near the free edges
 #: of the space the field varies more than the covariance says; the longer its range, the farther in.
 _BEYOND, _GROWTH = 3.0, 2.0
-#: Starts of the search: kappa per unit, and rho.
-_KAPPAS, _RHOS = (0.1, 0.7), (5e-5, 2e-3, 0.1)
-#: The smoothness to try where one is the best of those that are always compared.
-SMOOTHER = {3: 6}
 
 
 @dataclass(frozen=True)
@@ -106,13 +98,6 @@ class FieldChoice:
     def turned(self) -> FieldChoice:
         """The same field with u and v exchanged."""
         return replace(self, stretch=(-self.stretch[0], self.stretch[1]))
-
-
-def as_smooth(kappa: float, rho: float, alpha: int, other: int) -> tuple[float, float]:
-    """Return kappa and rho of a field of another exponent, of the same variance and correlation length."""
-    old, new = alpha - 1, other - 1
-    found = kappa * math.sqrt(new / old)
-    return found, rho * old * kappa ** (2 * old) / (new * found ** (2 * new))
 
 
 @dataclass(frozen=True, eq=False)
@@ -265,7 +250,7 @@ def choose_covariance(
         best_of = maximize_over_noise if smoothing is None else Likelihood.optimum
         found = [best_of(judge, start) for judge, start in zip(judges, starts, strict=True)]
     else:
-        found = _search(likelihood, space.degree, len(plane), smoothing)
+        found = search(likelihood, space.degree, len(plane), smoothing)
     found = sorted(found, key=lambda one: one.value)
     if found[0].value >= UNSOLVABLE:
         text = message(
@@ -286,25 +271,6 @@ def choose_covariance(
         field = FieldChoice(*covariance, own, contradictory, scatter, optimum.hold)
         fields.append((field.turned if turned else field, optimum.value))
     return [(field, value) for field, value in fields if value < UNSOLVABLE]
-
-
-def _search(likelihood: Callable[[int], Likelihood], degree: int, n: int, rho: float | None) -> list[Optimum]:
-    """Compare the smoothnesses, and try a smoother one where the best of them is."""
-    few = n < ENOUGH
-    alphas = {3: (2,) if few else (3, 2), 2: (2,)}.get(degree, (1,))
-    free = [k for k in EVERY[: 2 if few else 4] if k != 1 or rho is None]
-    found: list[Optimum] = []
-    for alpha in alphas:
-        judge = likelihood(alpha)
-        starts = itertools.product(_KAPPAS, _RHOS if rho is None else (rho,))
-        places = [judge.parameters(*start, (0.0, 0.0)) for start in starts]
-        found.append(maximize(judge, places, free, found[0].value if found else math.inf))
-    best = min(found, key=lambda one: one.value)
-    if best.value < UNSOLVABLE and best.alpha in SMOOTHER and rho is None:
-        judge = likelihood(SMOOTHER[best.alpha])
-        start = as_smooth(best.kappa, best.rho, best.alpha, judge.alpha)
-        found.append(maximize(judge, [judge.parameters(*start, best.stretch)], free))
-    return found
 
 
 def widened_space(space: TensorSpace) -> TensorSpace:

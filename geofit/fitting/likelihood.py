@@ -116,6 +116,30 @@ class _Solved:
     columns: tuple[Floats, Floats, Floats]
 
 
+@dataclass(frozen=True, eq=False)
+class _Point:
+    """What the derivatives at a set of parameters are made of.
+
+    ``hold`` is the precision of the slope's prior, ``misfit`` is Q and ``weight`` 1 / s^2, ``lower`` the factor of P;
+    ``slopes`` (r, k) are those of the planes and ``covariance`` (r, r) is S; ``own`` (size, k) is x and ``planes``
+    (size, r) is Y; ``bent`` and ``bent_planes`` are K x and what K does to the planes that the noise takes.
+    """
+
+    kappa: float
+    rho: float
+    stretch: tuple[float, float]
+    hold: float
+    misfit: float
+    weight: float
+    lower: Floats
+    slopes: Floats
+    covariance: Floats
+    planes: Floats
+    own: Floats
+    bent: Floats
+    bent_planes: Floats
+
+
 class Likelihood:
     """Restricted likelihood of the fields of one smoothness on a space of even spans.
 
@@ -153,7 +177,9 @@ class Likelihood:
         least = math.log(curved) if alpha > 2 else LOG_KAPPA[0]
         self.least = max(least, math.log(_LEAST) / (2 * self.precision.order) - math.log(span))
         # kappa^(2 nu) is part of rho.
-        self.rhos = (LOG_RHO[0] - SMALLER * (self.precision.power - 1), LOG_RHO[1])
+        longest = 2 * alpha * math.log(side / (2 * math.pi))
+        # Waves as long as the area may pass for noise.
+        self.rhos = (LOG_RHO[0] - SMALLER * (self.precision.power - 1), max(LOG_RHO[1], longest))
         self._known: dict[_Key, tuple[float, float, float]] = {}
         self._prior_of: tuple[tuple[float, ...], tuple[Floats, Floats, float]] | None = None
         self._solved: _Solved | None = None
@@ -187,8 +213,50 @@ class Likelihood:
         _, variance, hold = self._known[key]
         return Optimum(self.alpha, _kappa(key), math.exp(key[1]), key[2:], value, variance, hold)
 
-    def gradient(self, parameters: Floats) -> Floats:
-        """Return the (4,) derivatives of the value by the parameters; nan where the system has no solution.
+    def derivatives(self, parameters: Floats) -> tuple[Floats, Floats]:
+        """Return the (4,) derivatives of the value by the parameters, and a (4, 4) matrix close to its second ones.
+
+        Both are nan where the system has no solution.
+        """
+        at = self._point(parameters)
+        if at is None:
+            return np.full(4, np.nan), np.full((4, 4), np.nan)
+        return self._gradient(at), self._information(at)
+
+    def _point(self, parameters: Floats) -> _Point | None:
+        key = _key_of(parameters)
+        self(parameters)
+        if self._solved is None or self._solved.key != key:
+            self._evaluate(key)
+        _, variance, hold = self._known[key]
+        if self._solved is None or not math.isfinite(variance):
+            return None
+        (held, free, drifted), prior = self._solved.columns, self.slope.precision(hold)
+        covariance = np.linalg.inv(self.drift.T @ held - held.T @ drifted + prior)
+        slopes = covariance @ (held.T @ free + (prior @ self.slope.aim)[:, None])
+        planes = self.drift - drifted
+        # K acts on x and Y as A' W A does on what they leave to the noise.
+        taken = band_times(self.band, np.column_stack([free + drifted @ slopes, drifted]))
+        count = self.columns.shape[1]
+        return _Point(
+            kappa=_kappa(key),
+            rho=math.exp(key[1]),
+            stretch=key[2:],
+            hold=hold,
+            misfit=variance * self.free,
+            # At its floor the misfit is constant.
+            weight=1 / variance if variance * self.free > self.floor else 0.0,
+            lower=self._solved.lower,
+            slopes=slopes,
+            covariance=covariance,
+            planes=planes,
+            own=free - planes @ slopes,
+            bent=self.columns - taken[:, :count],
+            bent_planes=taken[:, count:],
+        )
+
+    def _gradient(self, at: _Point) -> Floats:
+        """Return the (4,) derivatives of the value by the parameters.
 
         Notes
         -----
@@ -200,39 +268,51 @@ class Likelihood:
         S. P. Smith, J. Comput. Graph. Stat. 4, 1995, 134-147). The planes and the hold of their slope are the best ones
         for each set of parameters, and add nothing.
         """
-        key = _key_of(parameters)
-        self(parameters)
-        if self._solved is None or self._solved.key != key:
-            self._evaluate(key)
-        _, variance, hold = self._known[key]
-        if self._solved is None or not math.isfinite(variance):
-            return np.full(4, np.nan)
-        kappa, rho, stretch, (held, free, drifted) = _kappa(key), math.exp(key[1]), key[2:], self._solved.columns
-        precision, count, prior = self.precision, self.columns.shape[1], self.slope.precision(hold)
-        covariance = np.linalg.inv(self.drift.T @ held - held.T @ drifted + prior)
-        slopes = covariance @ (held.T @ free + (prior @ self.slope.aim)[:, None])
-        planes, total = self.drift - drifted, free + drifted @ slopes
-        own = free - planes @ slopes
-        # At its floor the misfit is constant.
-        weight = 1 / variance if variance * self.free > self.floor else 0.0
-        near, shape = inverse_band(self._solved.lower), precision.space.shape
-        columns = np.column_stack([math.sqrt(weight) * own, planes @ np.linalg.cholesky(count * covariance)])
+        precision, count = self.precision, self.columns.shape[1]
+        near, shape = inverse_band(at.lower), precision.space.shape
+        columns = np.column_stack(
+            [math.sqrt(at.weight) * at.own, at.planes @ np.linalg.cholesky(count * at.covariance)]
+        )
         couplings = count * from_band(near, shape, precision.reach)
         couplings += dyads(columns.reshape(*shape, -1), precision.reach)
-        by_form = rho * precision.trace_slopes(kappa, stretch, couplings)
-        by_form -= count * precision.logdet_slopes(kappa, stretch)
-        # K acts on x and Y as A' W A does on what they leave to the noise.
-        taken = band_times(self.band, np.column_stack([total, drifted]))
-        by_rho = weight * (own * (self.columns - taken[:, :count])).sum()
-        by_rho += count * ((covariance * (planes.T @ taken[:, count:])).sum() - _trace(near, self.band))
+        by_form = at.rho * precision.trace_slopes(at.kappa, at.stretch, couplings)
+        by_form -= count * precision.logdet_slopes(at.kappa, at.stretch)
+        by_rho = at.weight * (at.own * at.bent).sum()
+        by_rho += count * ((at.covariance * (at.planes.T @ at.bent_planes)).sum() - _trace(near, self.band))
         if self.held:
-            off = slopes[1:, 0] - self.slope.aim[1:]
-            by_hold = weight * hold * (off @ off) + (covariance * prior).sum() - len(off)
+            off = at.slopes[1:, 0] - self.slope.aim[1:]
+            by_hold = at.weight * at.hold * (off @ off)
+            by_hold += (at.covariance * self.slope.precision(at.hold)).sum() - len(off)
             by_rho += by_hold
             by_form[0] += 2 * (self.alpha - 1) * by_hold
-        turned = np.array(stretch)
-        by_stretch = by_form[1:] + by_form[0] * turned / (2 * math.hypot(*stretch, ROUND)) + 2 * turned / DOUBT**2
+        turned = np.array(at.stretch)
+        by_stretch = by_form[1:] + by_form[0] * _widening_slopes(at.stretch) + 2 * turned / DOUBT**2
         return np.array([by_form[0], by_rho, *by_stretch])
+
+    def _information(self, at: _Point) -> Floats:
+        """Return the average information, (4, 4), the mean of the observed and the expected one, of -2 l.
+
+        Notes
+        -----
+        It asks for no more than products, and solutions with the factors at hand: with q_i = (dK / d theta_i) x,
+
+            s^2 J_ij = q_i' (K^-1 - P^-1 - Y S Y') q_j - (x' q_i) (x' q_j) / Q
+
+        (A. R. Gilmour, R. Thompson, B. R. Cullis, Biometrics 51, 1995, 1440-1450), the noise's variance being the best
+        one for the other parameters.
+        """
+        found, along = np.zeros((4, 4)), np.zeros(4)
+        for x, by_rho in zip(at.own.T, at.bent.T, strict=True):
+            by_form = at.rho * self.precision.times_slopes(at.kappa, at.stretch, x)
+            by_stretch = by_form[:, 1:] + by_form[:, :1] * _widening_slopes(at.stretch)
+            q = np.column_stack([by_form[:, 0], by_rho, by_stretch])
+            before = self.precision.solve(at.kappa, at.stretch, q) / at.rho
+            after = cho_solve_banded((at.lower, True), q, check_finite=False)
+            planes = at.planes.T @ q
+            found += q.T @ (before - after) - planes.T @ at.covariance @ planes
+            along += x @ q
+        found -= np.outer(along, along) / at.misfit
+        return np.asarray(at.weight * found + np.diag([0.0, 0.0, 2 / DOUBT**2, 2 / DOUBT**2]))
 
     def _prior(self, kappa: float, stretch: tuple[float, float]) -> tuple[Floats, Floats, float]:
         """Return E, E times the planes, and log|E|; the last ones are kept."""
@@ -313,6 +393,11 @@ def _kappa(key: _Key) -> float:
 def _widening(p: float, q: float) -> float:
     """Return the logarithm of kappa to the inverse range in the direction of the longest, for a stretch."""
     return (math.hypot(p, q, ROUND) - ROUND) / 2
+
+
+def _widening_slopes(stretch: tuple[float, float]) -> Floats:
+    """Return the (2,) derivatives of :func:`_widening` by both parts of the stretch."""
+    return np.array(stretch) / (2 * math.hypot(*stretch, ROUND))
 
 
 def _trace(one: Floats, other: Floats) -> float:

@@ -1,8 +1,7 @@
 """The search for the parameters of the greatest restricted likelihood (:mod:`geofit.fitting.likelihood`).
 
-All parameters are found together by a quasi-Newton method with the exact gradient (C. G. Broyden, R. Fletcher,
-D. Goldfarb, D. F. Shanno, 1970), within their bounds. The curvature that it starts from is the usual one of such
-likelihoods: few points fix the field's variance, many its short waves, which rho alone governs.
+All parameters are found together by Newton's method with the exact gradient and the average information in place of
+the second derivatives (A. R. Gilmour, R. Thompson, B. R. Cullis, Biometrics 51, 1995, 1440-1450), within their bounds.
 """
 
 from __future__ import annotations
@@ -21,12 +20,14 @@ Floats = NDArray[np.float64]
 
 #: All parameters: the longest range, rho, and both parts of the stretch.
 EVERY = (0, 1, 2, 3)
-#: How far behind a rival, -2 log of the likelihood, a search is given up, and after how many steps at the earliest.
-BEHIND, PATIENCE = 60.0, 2
+#: How far behind a rival, -2 log of the likelihood, a search is given up, after how many steps at the earliest, and
+#: unless so many steps like the next one would catch up.
+BEHIND, PATIENCE, PACE = 60.0, 2, 2.0
 #: The gain, -2 log of the likelihood, that another step must promise; steps at most, and their longest.
-SETTLED, STEPS, LONGEST = 0.1, 20, np.array([1.0, 4.0, 0.25, 0.25])
-#: Number of points at which the curvature lies halfway between that of few and that of many.
-HALFWAY = 250.0
+SETTLED, STEPS, LONGEST = 0.2, 20, np.array([1.0, 4.0, 0.25, 0.25])
+#: Added to the information, for log kappa once for each unit of nu: it leaves out what the planes say, and a step must
+#: stay within sight where the points say little.
+MORE, MORE_OF_KAPPA = 1.0, 8.0
 #: Rounds over the parameters for a step at most, and the change of one that ends them.
 SWEEPS, STILL = 50, 1e-4
 #: First step of log rho on another space.
@@ -51,20 +52,21 @@ def maximize(likelihood: Likelihood, starts: Sequence[Floats], free: Sequence[in
     value = likelihood(at)
     if value >= UNSOLVABLE:
         return likelihood.optimum(at)
-    gradient, curvature = likelihood.gradient(at), _usual_curvature(likelihood)
+    gradient, curvature = _derivatives(likelihood, at)
     for count in range(STEPS):
-        if count >= PATIENCE and value > rival + BEHIND:
-            break
         step = _step(at, gradient, curvature, likelihood.bounds(), free)
         slope = float(gradient @ step)
-        if -slope - float(step @ curvature @ step) / 2 < SETTLED:
+        promised = -slope - float(step @ curvature @ step) / 2
+        if promised < SETTLED or (count >= PATIENCE and value - rival > max(BEHIND, PACE * promised)):
             break
         part = _descent(likelihood, at, step, value, slope)
         if part == 0.0:
             break
-        before, at, value = gradient, at + part * step, likelihood(at + part * step)
-        gradient = likelihood.gradient(at)
-        curvature = _updated(curvature, part * step, gradient - before)
+        at = at + part * step
+        gained, before, value = value - likelihood(at), gradient, likelihood(at)
+        gradient, curvature = _derivatives(likelihood, at)
+        if gained < promised / 2:
+            curvature = _updated(curvature, part * step, gradient - before)
     return likelihood.optimum(at)
 
 
@@ -104,6 +106,12 @@ def maximize_over_noise(likelihood: Likelihood, start: Floats) -> Optimum:
     return likelihood.optimum(min((at(one) for one in (behind, middle, ahead)), key=likelihood))
 
 
+def _derivatives(likelihood: Likelihood, at: Floats) -> tuple[Floats, Floats]:
+    """Return the gradient, and the curvature of the quadratic model."""
+    gradient, information = likelihood.derivatives(at)
+    return gradient, information + np.diag([max(likelihood.alpha - 1, 1) * MORE_OF_KAPPA, MORE, MORE, MORE])
+
+
 def _vertex(x: tuple[float, float, float], y: tuple[float, float, float]) -> tuple[float, float]:
     """Return where a parabola through three values has its vertex, and how far that lies below the middle value.
 
@@ -118,18 +126,6 @@ def _vertex(x: tuple[float, float, float], y: tuple[float, float, float]) -> tup
         return x[1], 0.0
     by = -(left - curvature * before) / (2 * curvature)
     return (x[1] + by, curvature * by**2) if min(x) < x[1] + by < max(x) else (x[1], 0.0)
-
-
-def _usual_curvature(likelihood: Likelihood) -> Floats:
-    """Return a (4, 4) matrix of second derivatives as such likelihoods have it, within a factor of three or so."""
-    n, nu = likelihood.free, likelihood.alpha - 1
-    noise = n / 5
-    curvature = np.diag([8 + n * nu**2 / 20, noise, n / 2, n / 2])
-    # At a constant variance of the field log rho falls by 2 nu as log kappa grows by 1.
-    turn = 2 * nu / (1 + n / HALFWAY)
-    curvature[0, 0] += turn**2 * noise
-    curvature[0, 1] = curvature[1, 0] = turn * noise
-    return curvature
 
 
 def _step(
@@ -170,7 +166,7 @@ def _descent(likelihood: Likelihood, at: Floats, step: Floats, value: float, slo
 
 
 def _updated(curvature: Floats, step: Floats, turned: Floats) -> Floats:
-    """Return the curvature that explains how the gradient turned along a step."""
+    """Return the curvature that explains how the gradient turned along a step (Broyden, Fletcher and others, 1970)."""
     along = float(step @ turned)
     # Where the value is not convex along the step, nothing is learned.
     if along <= 1e-8 * float(np.linalg.norm(step) * np.linalg.norm(turned)):

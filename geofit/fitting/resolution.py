@@ -30,9 +30,10 @@ EVEN, CLOSE, LESS_EVEN, SKETCH, FIRST_LEVEL, LAST_LEVEL = 0.5, 0.25, 0.35, 500, 
 SKETCHED = 10_000
 #: Another level must raise the restricted likelihood by this much, -2 log of it.
 GAIN = 10.0
-#: The same for each point where the field is smoother than the splines: of its form, shorter spans are always a better
-#: approximation, but twice as many control points are to lower the noise by a fiftieth.
-WORTH = 0.04
+#: The same where the field is smoother than the splines, for each point or for each control point more, whichever is
+#: less: shorter spans are always a better approximation of its form, but are to lower the noise by a fiftieth, or, of
+#: very many points, to be worth their number (H. Akaike, IEEE Trans. Autom. Control 19, 1974, 716-723).
+OF_POINTS, OF_CONTROL_POINTS = 0.04, 2.0
 #: Control points of a coarser level, as a share of those of the last, and the least of any.
 COARSER, COARSEST = 0.75, 75
 #: How many times the noise of the level before a coarser one may find.
@@ -104,8 +105,7 @@ def choose_field(data: Data, settings: FitSettings, most: int, sketched: Sequenc
             # A field smoother than the splines needs shorter spans only where those of the sketch still cut it.
             settled = known and known[0].noise < LOUDER * first.field.noise
             closest = CLOSE if first.field.alpha <= degree else EVEN if settled else LESS_EVEN
-            gain = GAIN if first.field.alpha <= degree else max(GAIN, WORTH * len(data.plane))
-            best = _shortened(first, _finer(data.area, degree, limit, closest), on, gain)
+            best = _shortened(best, _finer(data.area, degree, limit, closest), on, len(data.plane))
             if best is not first:
                 # Spaces no finer than the first one have been evaluated already.
                 between = (one for one in _coarser(data.area, degree, best.space.size) if one.size > first.space.size)
@@ -143,11 +143,13 @@ def _lengthened(best: Level, coarser: Iterable[TensorSpace], on: Search) -> Leve
     return simplest if simplest.value < best.value - GAIN else best
 
 
-def _shortened(best: Level, finer: Iterable[TensorSpace], on: Search, gain: float) -> Level:
-    """Go to shorter spans while the likelihood gains by it."""
+def _shortened(best: Level, finer: Iterable[TensorSpace], on: Search, n: int) -> Level:
+    """Go to shorter spans while the likelihood of n points gains by it."""
     for space in finer:
         if space.size < 1.3 * best.space.size:
             continue
+        worth = min(OF_POINTS * n, OF_CONTROL_POINTS * (space.size - best.space.size))
+        gain = GAIN if best.field.alpha <= space.degree else max(GAIN, worth)
         level = on(space, [best.field])[0]
         if level.value > best.value - gain:
             break

@@ -19,9 +19,10 @@ from geofit.data.labels import Labels
 from geofit.data.messages import Message, message
 from geofit.fitting.active_points import Data, degree_for, gather_points
 from geofit.fitting.conflicts import trust_of, trust_of_kinds
-from geofit.fitting.field import ENOUGH, FieldChoice, choose_covariance
+from geofit.fitting.field import FieldChoice, choose_covariance
 from geofit.fitting.model import Problem
 from geofit.fitting.resolution import EVEN, FIRST_LEVEL, GAIN, SKETCH, SKETCHED, even_space, sketched_fields
+from geofit.fitting.smoothness import ENOUGH
 from geofit.splines.tensor import TensorSpace
 
 __all__ = ["with_noise_of_sources"]

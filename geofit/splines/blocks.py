@@ -12,7 +12,7 @@ import numpy as np
 from numpy.lib.stride_tricks import as_strided, sliding_window_view
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
-from scipy.linalg.blas import dtrsm
+from scipy.linalg.blas import dsymm, dtrsm
 from scipy.linalg.lapack import dpotri
 from scipy.sparse import csr_array
 
@@ -138,7 +138,9 @@ class BlockFactor:
 
     def inverse(self) -> InverseBlocks:
         """Return the inverse within the band."""
-        return InverseBlocks(self.width, *_inverted(self._lower, self._below), self._scale)
+        diagonal, below = _inverted(self._lower, self._below)
+        whole = [np.tril(block) + np.tril(block, -1).T for block in diagonal]
+        return InverseBlocks(self.width, whole, below, self._scale)
 
 
 class InverseBlocks:
@@ -199,21 +201,18 @@ def _cut(band: Floats, width: int) -> tuple[list[Floats], list[Floats]]:
 def _inverted(lower: list[Floats], below: list[Floats]) -> tuple[list[Floats], list[Floats]]:
     """Return the blocks on and below the diagonal of the inverse Z of L L' (recursion of Takahashi et al., 1973).
 
-    With G = L_(k+1,k) L_kk^-1: Z_(k+1,k) = -Z_(k+1,k+1) G and Z_kk = L_kk^-T L_kk^-1 - G' Z_(k+1,k).
+    With G = L_(k+1,k) L_kk^-1: Z_(k+1,k) = -Z_(k+1,k+1) G and Z_kk = L_kk^-T L_kk^-1 - G' Z_(k+1,k). Of the blocks on
+    the diagonal only the lower triangles are filled.
     """
     diagonal: list[Floats] = []
     off: list[Floats] = []
     for k in range(len(lower) - 1, -1, -1):
-        # The lower triangle of both terms, mirrored at last.
         own = dpotri(lower[k], lower=True)[0]
         if k < len(below):
             step = dtrsm(1.0, lower[k], below[k], side=True, lower=True)
-            off.append(-diagonal[-1] @ step)
+            off.append(dsymm(-1.0, diagonal[-1], step, lower=True))
             own -= step.T @ off[-1]
-        own = np.tril(own)
-        mirrored = own + own.T
-        mirrored.flat[:: len(own) + 1] /= 2
-        diagonal.append(mirrored)
+        diagonal.append(own)
     return diagonal[::-1], off[::-1]
 
 

@@ -22,7 +22,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cholesky_banded
+from scipy.linalg import cho_solve_banded, cholesky_banded
 
 from geofit.splines import bspline
 from geofit.splines.blocks import inverse_band
@@ -205,6 +205,36 @@ class MaternPrecision:
             return self._of_terms(kappa, stretch, couplings)
         return 2 * self._of_terms(kappa, stretch, product_near(self._form(kappa, stretch), self._masses, couplings))
 
+    def times_slopes(self, kappa: float, stretch: tuple[float, float], x: Floats) -> Floats:
+        """Return (size, 3) the derivatives of E times (size,) coefficients, by log kappa and both stretches."""
+        weights, slopes = self._weights(kappa, stretch), self._weight_slopes(kappa, stretch)
+        products = self._products(x.reshape(self.space.shape))
+        found = np.tensordot(slopes, products, axes=1)
+        if self.power == 2:
+            once = np.tensordot(weights, products, axes=1) / self._masses
+            again = [np.tensordot(weights, self._products(one / self._masses), axes=1) for one in found]
+            found = np.array(again) + np.tensordot(slopes, self._products(once), axes=1)
+        return np.asarray(found.reshape(3, -1).T)
+
+    def solve(self, kappa: float, stretch: tuple[float, float], right: Floats) -> Floats:
+        """Return the inverse of E times (size, k) columns."""
+        factor = self._factor(kappa, stretch), True
+        solved = cho_solve_banded(factor, right, check_finite=False)
+        for _ in range(self.power - 1):
+            solved = cho_solve_banded(factor, self._masses.reshape(-1, 1) * solved, check_finite=False)
+        return np.asarray(solved)
+
+    @cached_property
+    def _matrices(self) -> tuple[Floats, Floats]:
+        """Factors of each term of F: (terms, nu, nu), (terms, nv, nv)."""
+        along, across = (np.array([_matrix(diagonals) for diagonals in factor]) for factor in self._factors)
+        return along, across
+
+    def _products(self, net: Floats) -> Floats:
+        """Return (terms, nu, nv) each term of F times a (nu, nv) net."""
+        along, across = self._matrices
+        return np.asarray(along @ net @ across.swapaxes(1, 2))
+
     def _of_terms(self, kappa: float, stretch: tuple[float, float], couplings: Floats) -> Floats:
         """Return (3,) the derivatives of tr(G F) for couplings G, (2 p + 1, nu, 2 p + 1, nv)."""
         along, across = (factor.reshape(len(factor), -1) for factor in self._factors)
@@ -218,6 +248,15 @@ class MaternPrecision:
         for _ in range(self.power - 1):
             flat = applied(self._form(kappa, stretch), flat / self._masses[..., None])
         return np.asarray(flat.reshape(-1, 3))
+
+
+def _matrix(diagonals: Floats) -> Floats:
+    """Return the matrix of the given diagonals, (2 p + 1, count) from the upmost on."""
+    p, count = len(diagonals) // 2, diagonals.shape[1]
+    result = np.zeros((count + 2 * p, count))
+    for below, diagonal in enumerate(diagonals):
+        np.fill_diagonal(result[below:], diagonal)
+    return result[p : p + count]
 
 
 def _times(diagonals: Floats, x: Floats) -> Floats:

@@ -7,7 +7,6 @@ from truth import EASTING, NORTHING, hills, rms
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.fitting.field import (
-    as_smooth,
     choose_covariance,
     drift_of,
     plane_trend,
@@ -143,7 +142,7 @@ def test_holes_in_groups_on_a_rugged_surface_take_a_finer_field(seed, monkeypatc
 
 @pytest.mark.parametrize("seed", [0, 1])
 def test_holes_in_groups_on_a_smooth_surface_take_no_more_control_points(seed, monkeypatch):
-    monkeypatch.setattr("geofit.fitting.field.SMOOTHER", {})
+    monkeypatch.setattr("geofit.fitting.smoothness.SMOOTHER", {})
     points, _ = groups_of_holes(seed, hills(seed))
     assert longest_span(field_alone(points).model.net.base) > 0.4
 
@@ -190,7 +189,7 @@ def test_a_rugged_surface_keeps_the_spans_that_its_relief_needs(seed):
 
 def test_accurate_points_keep_the_spans_that_noise_alone_does_not_explain(monkeypatch):
     """On longer spans the noise would be several times as large: they cut the truth, which the points resolve."""
-    monkeypatch.setattr("geofit.fitting.field.SMOOTHER", {})
+    monkeypatch.setattr("geofit.fitting.smoothness.SMOOTHER", {})
     points, at = noisy_points(1, hills(1), noise=0.01)
     found = field_alone(points)
     assert found.diagnostics["noise"] < 0.02
@@ -206,7 +205,7 @@ def test_a_smooth_surface_takes_the_smoothest_field_and_gains_by_it(seed, monkey
     truth = hills(seed)(*at.T)
     smooth = field_alone(points)
     assert smooth.model.net.field.alpha == 6
-    monkeypatch.setattr("geofit.fitting.field.SMOOTHER", {})
+    monkeypatch.setattr("geofit.fitting.smoothness.SMOOTHER", {})
     rough = field_alone(points)
     assert rms(smooth.elevation(*at.T) - truth) < 0.9 * rms(rough.elevation(*at.T) - truth)
 
@@ -216,14 +215,8 @@ def test_a_rugged_surface_does_not_pass_for_noise_about_a_smooth_one(seed, monke
     points, _ = noisy_points(seed, rugged(seed))
     field = field_alone(points).model.net.field
     assert field.alpha <= 3
-    monkeypatch.setattr("geofit.fitting.field.SMOOTHER", {})
+    monkeypatch.setattr("geofit.fitting.smoothness.SMOOTHER", {})
     assert field.noise < 1.25 * field_alone(points).model.net.field.noise
-
-
-def test_a_field_of_another_smoothness_keeps_variance_and_length():
-    kappa, rho = as_smooth(0.8, 1e-3, 3, 6)
-    assert np.sqrt(5) / kappa == pytest.approx(np.sqrt(2) / 0.8)
-    assert rho * 5 * kappa**10 == pytest.approx(1e-3 * 2 * 0.8**4)
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 0.6, 2.0])

@@ -57,7 +57,48 @@ def test_the_gradient_against_central_differences(alpha, columns, extent):
     for at in (likelihood.parameters(*place) for place in places):
         # Applied twice, the form leaves the value seven digits.
         expected = [(likelihood(at + by) - likelihood(at - by)) / 2e-3 for by in 1e-3 * np.eye(4)]
-        np.testing.assert_allclose(likelihood.gradient(at), expected, rtol=1e-3, atol=0.01)
+        np.testing.assert_allclose(likelihood.derivatives(at)[0], expected, rtol=1e-3, atol=0.01)
+
+
+def dense_information(space, plane, z, weight, alpha, at, slope, hold):
+    """The same from dense covariance matrices and their central differences (Gilmour, Thompson, Cullis 1995)."""
+    a, f = space.matrix(plane).toarray(), np.column_stack([np.ones(N), plane])
+
+    def covariance(at):
+        p, q = at[2:]
+        band = MaternPrecision(space, alpha).band(math.exp(at[0] + (math.hypot(p, q, ROUND) - ROUND) / 2), (p, q))
+        full = np.zeros((space.size, space.size))
+        for k in range(len(band)):
+            index = np.arange(space.size - k)
+            full[index + k, index] = full[index, index + k] = band[k, : space.size - k]
+        return np.diag(1 / weight) + a @ np.linalg.solve(full, a.T) / math.exp(at[1])
+
+    turned = [(covariance(at + by) - covariance(at - by)) / 2e-4 for by in 1e-4 * np.eye(4)]
+    inverse = np.linalg.inv(covariance(at))
+    prior = np.diag([0.0, hold, hold])
+    projected = inverse - inverse @ f @ np.linalg.solve(f.T @ inverse @ f + prior, f.T @ inverse)
+    found, along, misfit = np.zeros((4, 4)), np.zeros(4), 0.0
+    for column in z.reshape(N, -1).T:
+        rest = projected @ (column - f @ slope.aim)
+        moved = [one @ rest for one in turned]
+        found += [[one @ projected @ other for other in moved] for one in moved]
+        along += [rest @ one for one in moved]
+        misfit += (column - f @ slope.aim) @ rest
+    free = (N - (1 if hold else 3)) * (1 if z.ndim == 1 else z.shape[1])
+    doubt = np.diag([0.0, 0.0, 2 / DOUBT**2, 2 / DOUBT**2])
+    return (found - np.outer(along, along) / misfit) * free / misfit + doubt
+
+
+@pytest.mark.parametrize("alpha", [2, 3, 6])
+@pytest.mark.parametrize(("columns", "extent"), [(1, 0.0), (1, 8.0), (3, 0.0)])
+def test_the_information_agrees_with_dense_algebra(alpha, columns, extent):
+    given, slope = setting(columns=columns), Slope(np.eye(3), np.array([0.0, -0.4, 0.7]) * (extent > 0), extent)
+    likelihood = judge(*given, alpha, slope)
+    for place in [(1.1, 1e-2, (0.0, 0.0)), (0.8, 1e-3, (0.25, 0.15))]:
+        at = likelihood.parameters(*place)
+        expected = dense_information(*given, alpha, at, slope, likelihood.optimum(at).hold)
+        found = likelihood.derivatives(at)[1]
+        np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-3 * np.abs(expected).max())
 
 
 def test_a_range_cut_at_its_bound_keeps_the_variance():

@@ -145,3 +145,14 @@ def test_slopes_of_traces_and_of_the_determinant_against_central_differences(alp
     found = precision.logdet_slopes(np.exp(place[0]), (place[1], place[2]))
     expected = central(lambda at: precision.logdet(np.exp(at[0]), (at[1], at[2])), place)
     np.testing.assert_allclose(found, expected, rtol=1e-5)
+
+
+@pytest.mark.parametrize("alpha", [1, 2, 3, 6])
+def test_slopes_of_products_and_solutions_against_the_band(alpha):
+    space, place = space_of(4.0, 3.0), np.array([np.log(0.9), 0.2, -0.1])
+    precision, net = MaternPrecision(space, alpha), np.random.default_rng(5).normal(size=(space.size, 2))
+    at = np.exp(place[0]), (place[1], place[2])
+    expected = central(lambda one: band_times(precision.band(np.exp(one[0]), (one[1], one[2])), net[:, 0]), place)
+    found = precision.times_slopes(*at, net[:, 0])
+    np.testing.assert_allclose(found, expected.T, atol=1e-6 * np.abs(expected).max())
+    np.testing.assert_allclose(precision.solve(*at, band_times(precision.band(*at), net)), net, atol=1e-5)
