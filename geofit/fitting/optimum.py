@@ -24,10 +24,10 @@ EVERY = (0, 1, 2, 3)
 #: unless so many steps like the next one would catch up.
 BEHIND, PATIENCE, PACE = 60.0, 2, 2.0
 #: The gain, -2 log of the likelihood, that another step must promise; steps at most, and their longest.
-SETTLED, STEPS, LONGEST = 0.2, 20, np.array([1.0, 4.0, 0.25, 0.25])
+SETTLED, STEPS, LONGEST = 0.1, 20, np.array([1.0, 4.0, 0.25, 0.25])
 #: Added to the information, for log kappa once for each unit of nu: it leaves out what the planes say, and a step must
 #: stay within sight where the points say little.
-MORE, MORE_OF_KAPPA = 1.0, 8.0
+MORE, MORE_OF_KAPPA = 0.1, 0.5
 #: Rounds over the parameters for a step at most, and the change of one that ends them.
 SWEEPS, STILL = 50, 1e-4
 #: First step of log rho on another space.

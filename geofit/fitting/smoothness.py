@@ -26,6 +26,8 @@ ENOUGH = 16
 KAPPAS, WAVES = (0.04, 0.2, 1.0), (0.7, 2.0, 6.0)
 #: The smoothness to try beside one that is not far behind, and how many times shorter its range may be.
 SMOOTHER, SHORTER = {3: 6}, (1.25, 2.5)
+#: How much likelier it must be, -2 log, where a rougher one is likelier than the one that it is tried beside.
+PLAINLY = 10.0
 
 
 def search(likelihood: Callable[[int], Likelihood], degree: int, n: int, rho: float | None) -> list[Optimum]:
@@ -45,7 +47,9 @@ def search(likelihood: Callable[[int], Likelihood], degree: int, n: int, rho: fl
         if rough.alpha in SMOOTHER and rho is None and rough.value < min(best + BEHIND, UNSOLVABLE):
             judge = likelihood(SMOOTHER[rough.alpha])
             fields = [as_smooth(rough.kappa, rough.rho, rough.alpha, judge.alpha, shorter) for shorter in SHORTER]
-            found.append(maximize(judge, [judge.parameters(*one, rough.stretch) for one in fields], free, best))
+            smoother = maximize(judge, [judge.parameters(*one, rough.stretch) for one in fields], free, best)
+            if rough.value == best or smoother.value < best - PLAINLY:
+                found.append(smoother)
     return found
 
 
