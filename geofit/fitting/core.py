@@ -17,7 +17,7 @@ from geofit.data.errors import ExactnessError
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
-from geofit.fitting.active_points import Data, degree_for, gather_points
+from geofit.fitting.active_points import Data, degree_for
 from geofit.fitting.approximate import fixed_by_core
 from geofit.fitting.assemble import carried, multiply_knots
 from geofit.fitting.field import FieldChoice, Smoothed
@@ -26,7 +26,6 @@ from geofit.fitting.net import Net, Periphery, cap_for, in_patches, smoothed
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.resolution import Choice, choose_field, longest_span
 from geofit.fitting.skin import Lines, lofted, minimum_norm_correction, refine_knots, ruled, section_lines
-from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
@@ -111,19 +110,19 @@ class _Through:
 
 def fit_with_core(
     points: PointSet,
-    accuracy: Floats,
+    data: Data,
     parametrization: Parametrization,
     split: Split,
     kept: NDArray[np.bool_],
     settings: FitSettings,
     stage: Callable[[str, float], None],
-    slopes: Slopes | None = None,
     chosen: Choice | None = None,
     sketched: Sequence[FieldChoice] = (),
 ) -> Net:
     """Fit a surface whose core passes through its points.
 
-    ``chosen`` is the field to take; None: it is chosen by these points, from ``sketched`` fields on if there are any.
+    ``data`` are the points that are ``kept``. ``chosen`` is the field to take; None: it is chosen by these points, from
+    ``sketched`` fields on if there are any.
 
     Raises
     ------
@@ -131,7 +130,7 @@ def fit_with_core(
         If no control net within the cap passes through them without swinging between them.
     """
     assert split.core is not None
-    data = gather_points(accuracy, parametrization, settings, kept, split, slopes).whole()
+    data = data.whole()
     inside = split.inside[kept]
     scaled = [x / data.unit for x in split.core]
     core = (scaled[0], scaled[1], scaled[2], scaled[3])

@@ -43,7 +43,8 @@ class Problem:
     ``kept`` (n,) marks the points that conflicts left; ``boundary`` (k, 2) is the study area in map coordinates;
     ``outline`` (k, 2) is where the surface ends if that is not the study area: at faults. ``slopes`` are the measured
     dips that the fit uses, in the frame. ``sources`` is the noise of the kinds of points that state none
-    (:mod:`geofit.fitting.sources`), metres.
+    (:mod:`geofit.fitting.sources`), metres. ``unit`` is what lengths are measured by, metres; None: the spacing of the
+    sparse points.
     """
 
     points: PointSet
@@ -57,6 +58,7 @@ class Problem:
     outline: Floats | None = None
     slopes: Slopes | None = None
     sources: Mapping[str, float] = field(default_factory=dict)
+    unit: float | None = None
 
     @cached_property
     def accuracy(self) -> Floats:
@@ -75,24 +77,14 @@ class Problem:
         ``chosen`` is the field to take; None: it is chosen by these points, from ``sketched`` fields on if these points
         have given any.
         """
-        if self.split.core is None:
-            given = gather_points(self.accuracy, self.parametrization, self.settings, active, None, self.slopes)
+        split = None if self.split.core is None else self.split
+        given = gather_points(self.accuracy, self.parametrization, self.settings, active, split, self.slopes, self.unit)
+        if split is None:
             return Model(self, approximate_all(given, self.settings, stage, chosen, sketched))
-        return Model(
-            self,
-            fit_with_core(
-                self.points,
-                self.accuracy,
-                self.parametrization,
-                self.split,
-                active,
-                self.settings,
-                stage,
-                self.slopes,
-                chosen,
-                sketched,
-            ),
+        net = fit_with_core(
+            self.points, given, self.parametrization, split, active, self.settings, stage, chosen, sketched
         )
+        return Model(self, net)
 
     def partition(self) -> Partition:
         """Return the split in map coordinates."""

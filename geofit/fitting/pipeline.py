@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.given import SETTINGS, require_kind
 from geofit.data.points import PointSet
@@ -25,7 +26,9 @@ from geofit.fitting.solve import solve
 from geofit.fitting.sources import with_noise_of_sources
 from geofit.fitting.stages import Stages
 
-__all__ = ["fit_horizon"]
+__all__ = ["fit_horizon", "posed"]
+
+Floats = NDArray[np.float64]
 
 
 def fit_horizon(
@@ -81,18 +84,7 @@ def fit_horizon(
     stage = Stages(progress)
     # The banded systems are small: more threads cost more than they give, and change the last digits.
     with one_thread():
-        stage("conflicts", 0.0)
-        parametrization = parametrize(points, settings, corners)
-        kept, conflicts = resolve_conflicts(
-            points, parametrization.places, parametrization.heights, settings.coincidence_distance
-        )
-        stage("partition", 0.1)
-        split = partition(parametrization, settings, kept)
-        stage("fit", 0.2)
-        slopes, notes = slopes_of(orientations, name, parametrization, settings)
-        parametrization = replace(parametrization, notes=(*parametrization.notes, *notes))
-        given = Problem(points, settings, corners, parametrization, split, kept, conflicts, name, slopes=slopes)
-        problem, sketched = with_noise_of_sources(given)
+        problem, sketched = with_noise_of_sources(posed(points, settings, corners, stage, name, orientations))
         model = solve(problem, stage, sketched)
         stage("check", 0.8)
         surface = fit_of(model)
@@ -100,3 +92,25 @@ def fit_horizon(
         surface = exact_or_not(adjust_locally(model, surface))
         stage("done", 1.0)
     return surface.with_(diagnostics={**surface.diagnostics, "seconds": dict(stage.seconds)})
+
+
+def posed(
+    points: PointSet,
+    settings: FitSettings,
+    corners: Floats | None,
+    stage: Stages,
+    name: str,
+    orientations: Orientations | None = None,
+) -> Problem:
+    """Return what there is to solve: the points parametrized, without conflicts, and parted into core and periphery."""
+    stage("conflicts", 0.0)
+    parametrization = parametrize(points, settings, corners)
+    kept, conflicts = resolve_conflicts(
+        points, parametrization.places, parametrization.heights, settings.coincidence_distance
+    )
+    stage("partition", 0.1)
+    split = partition(parametrization, settings, kept)
+    stage("fit", 0.2)
+    slopes, notes = slopes_of(orientations, name, parametrization, settings)
+    parametrization = replace(parametrization, notes=(*parametrization.notes, *notes))
+    return Problem(points, settings, corners, parametrization, split, kept, conflicts, name, slopes=slopes)

@@ -35,7 +35,8 @@ def solve(problem: Problem, stage: Stages, sketched: Sequence[FieldChoice] = ())
     stage : Stages
         Hears of the stages.
     sketched : sequence of FieldChoice
-        What :func:`geofit.fitting.sources.with_noise_of_sources` has found of these points' field.
+        What is known of these points' field: by :func:`geofit.fitting.sources.with_noise_of_sources`, or by a fit of
+        more points.
 
     Raises
     ------
@@ -45,13 +46,13 @@ def solve(problem: Problem, stage: Stages, sketched: Sequence[FieldChoice] = ())
     settings, parametrization = problem.settings, problem.parametrization
     placed = problem.kept & parametrization.parametrized
     try:
-        model = problem.fit(placed, stage, sketched=sketched if placed.sum() == problem.kept.sum() else ())
+        model = problem.fit(placed, stage, sketched=sketched)
     except ExactnessError as error:
         if settings.core != "auto":
             raise
         model = _without_core(problem, error).fit(placed, stage)
     if not parametrization.parametrized.all():
-        model = _corrected(model, stage)
+        model = _corrected(model, stage, sketched)
     if settings.robust and not parametrization.parametric:
         stage("robust", 0.7)
         model = fit_robustly(model, stage)
@@ -70,7 +71,7 @@ def _without_core(problem: Problem, error: ExactnessError) -> Problem:
     return replace(problem, split=Split(None, nowhere, reason.with_severity("warning"), lost=True))
 
 
-def _corrected(model: Model, stage: Stages) -> Model:
+def _corrected(model: Model, stage: Stages, sketched: Sequence[FieldChoice]) -> Model:
     """Project the points between the sections on the surface, and fit again with the parameters found.
 
     The first of these fits chooses the field by all points; later ones keep it, for they move points but little.
@@ -82,7 +83,8 @@ def _corrected(model: Model, stage: Stages) -> Model:
         plane = parametrization.plane.copy()
         moved = np.abs(plane[between] - np.column_stack([foot.u, foot.v])).max()
         plane[between] = np.column_stack([foot.u, foot.v])
-        model = replace(problem, parametrization=parametrization.with_plane(plane)).fit(problem.kept, stage, chosen)
+        problem = replace(problem, parametrization=parametrization.with_plane(plane))
+        model = problem.fit(problem.kept, stage, chosen, sketched)
         chosen = (model.net.field, model.net.base)
         if moved < 1e-3:
             break

@@ -17,11 +17,15 @@ from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
+from geofit.data.threads import one_thread
 from geofit.fitting.calibration import LeftOutPoints, uncalibrated
+from geofit.fitting.field import FieldChoice
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
-from geofit.fitting.pipeline import fit_horizon
+from geofit.fitting.pipeline import posed
 from geofit.fitting.posterior import posterior
+from geofit.fitting.solve import solve
+from geofit.fitting.stages import Stages
 from geofit.prediction.bands import PredictionError
 from geofit.prediction.folds import groups_of
 from geofit.streaming.executors import Where
@@ -37,28 +41,34 @@ MOST_SECTIONS = 40
 
 @dataclass(frozen=True, eq=False)
 class RefitFold:
-    """Points of a surface with the group that is left out, and how the others are fitted."""
+    """Points of a surface with the group that is left out, and how the others are fitted.
+
+    ``known`` is the field of all points, ``unit`` what its lengths are measured by, metres.
+    """
 
     points: PointSet
     group: Ints
     settings: FitSettings
     boundary: Floats | None
     name: str
+    known: FieldChoice
+    unit: float
 
 
 def refit_without(fold: RefitFold) -> Floats | None:
     """Return what a fit without a group says of it, (2, k): signed distances from the surface, and their variances.
 
-    None where the others have no surface.
+    The covariance of the field stays that of all points, as it does where points of a height field are left out
+    (:mod:`geofit.fitting.deletion`); its noise and all else is found anew. None where the others have no surface.
     """
-    rest = np.setdiff1d(np.arange(len(fold.points)), fold.group)
+    rest, stage = np.setdiff1d(np.arange(len(fold.points)), fold.group), Stages(None)
     try:
-        without = fit_horizon(fold.points[rest], fold.settings, fold.boundary, name=fold.name)
-        foot = without.project(fold.points.xyz[fold.group])
-        model = without.model
-        assert model is not None
-        expected = PredictionError(model, posterior(model), uncalibrated())
-        return np.stack([foot.distance, expected.variance(np.column_stack([foot.u, foot.v]) / model.net.unit)])
+        with one_thread():
+            problem = posed(fold.points[rest], fold.settings, fold.boundary, stage, fold.name)
+            model = solve(replace(problem, unit=fold.unit), stage, [fold.known])
+            foot = model.patch_surface().project(fold.points.xyz[fold.group])
+            expected = PredictionError(model, posterior(model), uncalibrated())
+            return np.stack([foot.distance, expected.variance(np.column_stack([foot.u, foot.v]) / fold.unit)])
     except GeofitError:
         return None
 
@@ -83,7 +93,12 @@ def sections_by_refit(
         )
         inner = []
     tell(progress, "cross-validation", 0.0)
-    tasks = [RefitFold(points, group, surface.settings, model.problem.boundary, surface.name) for group in inner]
+    tasks = [
+        RefitFold(
+            points, group, surface.settings, model.problem.boundary, surface.name, model.net.field, model.net.unit
+        )
+        for group in inner
+    ]
     found: list[tuple[Ints, Floats]] = []
     for done, (k, said) in enumerate(where.run(refit_without, tasks)):
         tell(progress, "cross-validation", 0.9 * (done + 1) / len(inner))

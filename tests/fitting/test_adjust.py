@@ -8,6 +8,7 @@ from truth import EASTING, NORTHING, paper_arrangement, rms
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.checks.check import sigma
+from geofit.fitting.active_points import gather_points
 from geofit.fitting.adjust import pull_to_worst
 from geofit.fitting.core import fit_with_core
 from geofit.fitting.density import split_auto
@@ -28,7 +29,8 @@ def fitted():
     kept = np.ones(len(truth.points), bool)
     # As fit_horizon does: on small banded systems threads wait for each other.
     with threadpool_limits(limits=1):
-        net = fit_with_core(truth.points, truth.points.accuracy, parametrization, split, kept, settings, silent)
+        data = gather_points(truth.points.accuracy, parametrization, settings, kept, split)
+        net = fit_with_core(truth.points, data, parametrization, split, kept, settings, silent)
     return net, parametrization, split
 
 

@@ -93,8 +93,9 @@ def test_a_worker_that_is_killed_over_a_fold_costs_nothing(folded, tmp_path, mon
     monkeypatch.setenv("GEOFIT_TEST_MARK", str(tmp_path / "killed"))
     groups = [np.flatnonzero(folded.points.section == f"S{k}") for k in (1, 2, 3)]
     names = ("sound", "doomed", "sound")
+    net = folded.model.net
     tasks = [
-        refits.RefitFold(folded.points, group, folded.settings, None, name)
+        refits.RefitFold(folded.points, group, folded.settings, None, name, net.field, net.unit)
         for group, name in zip(groups, names, strict=True)
     ]
     found = dict(Where("local", 2).run(dying, tasks))
