@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from geofit.data.accuracy import Conflict, Partition
 from geofit.data.allowance import accuracies
 from geofit.data.points import PointSet
+from geofit.data.prepared import Preparing
 from geofit.data.settings import FitSettings
 from geofit.data.threads import one_thread
 from geofit.fitting.active_points import gather_points
@@ -99,7 +100,7 @@ class Problem:
 
 
 @dataclass(frozen=True, eq=False)
-class Model:
+class Model(Preparing):
     """A problem with one control net for the whole surface, of which the patches are parts.
 
     ``weights`` holds the weights of the control points of patches that were weighted manually, by name. ``aside``

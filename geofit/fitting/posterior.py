@@ -151,13 +151,17 @@ def noise_of_unused(given: Posterior, model: Model, points: Ints) -> Floats:
 
 
 def posterior(model: Model) -> Posterior:
-    """Return the posterior of the field of a fitted surface.
+    """Return the posterior of the field of a fitted surface; the model keeps it.
 
     Raises
     ------
     FitError
         If its system has no solution.
     """
+    return model.prepared(_posterior)
+
+
+def _posterior(model: Model) -> Posterior:
     given, net = model.problem, model.net
     # The points between the sections of a folded surface have found their places by now.
     kept = given.kept if given.parametrization.parametric else given.kept & given.parametrization.parametrized

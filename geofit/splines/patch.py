@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.data.prepared import Preparing
 from geofit.splines import bspline
 
 __all__ = ["Patch", "Patches"]
-
-T = TypeVar("T")
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Patch:
+class Patch(Preparing):
     """A NURBS patch (eq. 1) about the surface's local origin.
 
     Parameters
@@ -102,18 +101,6 @@ class Patch:
                 table[a, b] = total / w
         return table[du, dv]
 
-    def prepared(self, make: Callable[[Patch], T]) -> T:
-        """Return ``make(patch)``, made at the first call and kept."""
-        kept: dict[Any, Any] = self.__dict__.setdefault("_prepared", {})
-        if make not in kept:
-            kept[make] = make(self)
-        result: T = kept[make]
-        return result
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Pickle the patch without what was prepared from it."""
-        return {name: value for name, value in self.__dict__.items() if name != "_prepared"}
-
     def normal(self, u: ArrayLike, v: ArrayLike) -> Floats:
         """Return unit normals S_u x S_v; arrays broadcast to shape (..., 3)."""
         cross = np.cross(self.evaluate(u, v, 1, 0), self.evaluate(u, v, 0, 1))
@@ -125,21 +112,13 @@ def _binomial(n: int, k: int) -> int:
     return (1, 1, 1, 1, 2, 1)[n * (n + 1) // 2 + k]
 
 
-class Patches(tuple[Patch, ...]):
+class Patches(tuple[Patch, ...], Preparing):
     """The patches of one surface, with what has been prepared from them: it lives as long as they do."""
 
     @classmethod
     def of(cls, patches: Iterable[Patch]) -> Patches:
         """Return the patches themselves where they are already of this class."""
         return patches if isinstance(patches, cls) else cls(patches)
-
-    def prepared(self, make: Callable[[Patches], T]) -> T:
-        """Return ``make(patches)``, made at the first call and kept."""
-        kept: dict[Any, Any] = self.__dict__.setdefault("_prepared", {})
-        if make not in kept:
-            kept[make] = make(self)
-        result: T = kept[make]
-        return result
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the patches without what was prepared from them."""
