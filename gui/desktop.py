@@ -6,12 +6,13 @@ import gc
 import logging
 import signal
 import sys
+import threading
 import traceback
 from pathlib import Path
 from types import TracebackType
 from typing import cast
 
-from PySide6.QtCore import QObject, QStandardPaths, Qt, QTimer
+from PySide6.QtCore import QObject, QStandardPaths, Qt, QThread, QTimer
 
 from geofit.data.lengths import LengthUnit
 from geofit.data.messages import message
@@ -61,6 +62,7 @@ class Desktop(QObject):
             Path(QStandardPaths.writableLocation(QStandardPaths.StandardLocation.StateLocation)) / "sessions"
         )
         self.session = Session(self.journals, self)
+        self._telling = False
         self.window = self._window()
 
     def run(self, file: Path | None = None, splash: Splash | None = None) -> int:
@@ -69,6 +71,7 @@ class Desktop(QObject):
         Returns the exit code.
         """
         sys.excepthook = self._hear_mistake
+        threading.excepthook = lambda args: self._hear_mistake(args.exc_type, args.exc_value, args.exc_traceback)
         # Python handles Ctrl+C only while it runs; the garbage collector's timer wakes it twice a second.
         signal.signal(signal.SIGINT, lambda *_: self.window.close())
         # Modules loaded at start-up are never garbage; traversing them would take 0.2 s per full collection.
@@ -121,6 +124,7 @@ class Desktop(QObject):
         self.app.setQuitOnLastWindowClosed(False)
         old.leave_without_asking()
         self.window = self._window()
+        self.window.panels.log.take_over(old.panels.log)
         self.window.show()
         self.app.setQuitOnLastWindowClosed(True)
         old.deleteLater()
@@ -144,6 +148,13 @@ class Desktop(QObject):
         if isinstance(error, KeyboardInterrupt) or not isinstance(error, Exception):
             self.window.leave_without_asking()
             return
+        # A program without a console has no stderr: the log has the traceback, too.
         traceback.print_exception(kind, error, trace)
-        _LOG.error(message("gui.log-task-error", "{task}: {error}", task=kind.__name__, error=shown_error(error)))
-        self.window.fail("", error)
+        _LOG.error(shown_error(error), exc_info=(kind, error, trace))
+        # One dialog at a time, and in the window's thread: what fails whenever a panel is drawn fails behind it again.
+        if not self._telling and QThread.currentThread() is self.thread():
+            self._telling = True
+            try:
+                self.window.fail("", error)
+            finally:
+                self._telling = False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from functools import partial
 from typing import Any
 
 from PySide6.QtCore import QObject, Signal
@@ -20,7 +21,7 @@ from geofit.gui.workspace import Workspace
 from geofit.project.commands import SeparateHorizons, SetOrder
 from geofit.project.document import Document
 from geofit.project.ordering import all_orders, comparable, over_map, separated
-from geofit.project.provenance import DocumentError
+from geofit.project.provenance import DocumentError, Provenance
 from geofit.site.separate import Separation
 
 __all__ = ["Ordering"]
@@ -66,9 +67,11 @@ class Ordering(QObject):
             self.reported.emit(self.tr("Two fitted horizons are needed to check their order."))
             return
         title = self.tr("Check the order")
+        made = {name: document.state.provenances[name] for name in surfaces}
         self._activity.do(
-            title, all_orders, surfaces, pairs, document.site.ground, on_done=self._found, in_process=True
-        )
+            title, all_orders, surfaces, pairs, document.site.ground, on_done=partial(self._found, made),
+            in_process=True,
+        )  # fmt: skip
 
     def strata(self) -> dict[str, HorizonFit]:
         """Return the surfaces over the map; where the site states an order, those that it names (weathering cuts)."""
@@ -122,8 +125,8 @@ class Ordering(QObject):
             in_process=True,
         )
 
-    def _found(self, orders: tuple[Any, ...]) -> None:
-        self._showing.show_orders(orders)
+    def _found(self, made: dict[str, Provenance], orders: tuple[Any, ...]) -> None:
+        self._showing.show_orders(orders, made)
         self._panels.reveal("checks")
         crossing = [order for order in orders if order.crossings]
         for order in crossing:

@@ -20,6 +20,7 @@ from geofit.gui.view3d.drawn import Drawn
 from geofit.gui.view3d.sight import Sight
 from geofit.gui.workspace import Workspace
 from geofit.project.document import Document
+from geofit.project.provenance import Provenance
 from geofit.site.order import Order
 from geofit.site.throw import FaultCut
 
@@ -55,6 +56,8 @@ class Showing(QObject):
         self.also: list[Callable[[], object]] = []
         self.orders: tuple[Order, ...] = ()
         self.cuts: tuple[FaultCut, ...] = ()
+        #: From what the horizons were made that orders and cuts are about.
+        self._compared: dict[str, Provenance] = {}
         self._read_back: dict[str, tuple[HorizonFit, ReadBack]] = {}
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self.now)
@@ -65,7 +68,7 @@ class Showing(QObject):
             (document.settings_changed, self._on_settings),
             (document.points_changed, self._on_points),
             (document.result_changed, self._on_result),
-            (document.order_changed, self._on_site_again),
+            (document.order_changed, self._on_order),
             (document.name_changed, self._on_site_again),
             (document.selection_changed, self._on_selection),
         ):
@@ -149,9 +152,12 @@ class Showing(QObject):
         self._panels.view.set_faded(on)
         self.show_section()
 
-    def show_orders(self, orders: tuple[Order, ...]) -> None:
-        """Show how the horizons lie to each other, in the checks."""
-        self.orders = orders
+    def show_orders(self, orders: tuple[Order, ...], compared: Mapping[str, Provenance]) -> None:
+        """Show how the horizons lie to each other, in the checks; ``compared`` states from what they were made."""
+        present = self._document.state.provenances
+        same = {name for name, made in compared.items() if present.get(name) == made}
+        self.orders = tuple(order for order in orders if {order.upper, order.lower} <= same)
+        self._compared = {**self._compared, **compared}
         self._show_tree()
         self._show_horizon()
 
@@ -159,6 +165,7 @@ class Showing(QObject):
         """Show how far faults displace horizons, in the checks of their blocks."""
         horizons = {cut.horizon for cut in cuts}
         self.cuts = (*(cut for cut in self.cuts if cut.horizon not in horizons), *cuts)
+        self._compared = {**self._compared, **self._document.state.provenances}
         self._show_horizon()
 
     def show_read_back(self, found: Mapping[str, ReadBack]) -> None:
@@ -270,6 +277,10 @@ class Showing(QObject):
         self._read_back.clear()
         self._later.start()
 
+    def _on_order(self) -> None:
+        self.orders = ()
+        self._on_site_again()
+
     def _on_site_again(self) -> None:
         self._results.update(self._document.horizons)
         self._later.start()
@@ -287,8 +298,10 @@ class Showing(QObject):
 
     def _on_result(self, name: str) -> None:
         self._results.add(name)
-        self.orders = ()
-        self.cuts = tuple(cut for cut in self.cuts if name not in (cut.up, cut.down))
+        # An examination, or a surface made again, is news of the same surface: what was compared is still so.
+        if self._document.state.provenances.get(name) != self._compared.get(name):
+            self.orders = tuple(order for order in self.orders if name not in (order.upper, order.lower))
+            self.cuts = tuple(cut for cut in self.cuts if name not in (cut.up, cut.down))
         self._later.start()
 
     def _on_selection(self, _: object) -> None:

@@ -12,6 +12,7 @@ import logging
 import multiprocessing
 import threading
 import time
+import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection
@@ -365,4 +366,17 @@ def _serve(pipe: Connection, first: Callable[..., Any] | None) -> None:
         try:
             pipe.send(("done", function(*args, progress=listen)))
         except Exception as error:  # the last frame of this task: the window must hear of any failure
-            pipe.send(("error", error))
+            pipe.send(("error", _portable(error)))
+
+
+def _portable(error: Exception) -> Exception:
+    """Return an error that another process can read, with the traceback as a note: that itself stays here."""
+    if isinstance(error, GeofitError):
+        return error
+    trace = "".join(traceback.format_exception(error))
+    try:
+        ForkingPickler.loads(ForkingPickler.dumps(error))
+    except Exception:  # errors of other libraries: some can be written and not read again
+        error = RuntimeError(f"{type(error).__name__}: {error}")
+    error.add_note(trace)
+    return error

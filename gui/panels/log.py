@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Mapping
+from collections import deque
+from dataclasses import dataclass
 
 from PySide6.QtCore import QMessageLogContext, QObject, QtMsgType, Signal, qInstallMessageHandler
 from PySide6.QtGui import QColor, QGuiApplication, QPalette, QTextCharFormat, QTextCursor
@@ -36,8 +37,18 @@ def _hear_qt(kind: QtMsgType, context: QMessageLogContext, text: str | None) -> 
     logging.getLogger("qt").log(_QT_LEVELS.get(kind, logging.INFO), "%s", text or "")
 
 
+@dataclass(frozen=True)
+class _Entry:
+    """What a record says, in no language yet; ``trace`` is where an error that nobody foresaw was raised."""
+
+    created: float
+    level: int
+    text: Message | str
+    trace: str
+
+
 class _Bridge(QObject):
-    heard = Signal(int, str)
+    heard = Signal(object)
 
 
 class _Handler(logging.Handler):
@@ -46,6 +57,7 @@ class _Handler(logging.Handler):
     def __init__(self) -> None:
         super().__init__(logging.INFO)
         self.bridge = _Bridge()
+        self._plain = logging.Formatter()
 
     def filter(self, record: logging.LogRecord) -> bool:
         """Let what geofit and Qt say pass, and failures of the libraries."""
@@ -53,18 +65,22 @@ class _Handler(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         try:
-            text = self.format(record)
+            # What other libraries log stays as it is.
+            text = record.msg if isinstance(record.msg, Message) else record.getMessage()
         except (TypeError, ValueError):
             self.handleError(record)
             return
-        self.bridge.heard.emit(record.levelno, text)
+        # The letters: a traceback itself would hold the arrays of all its frames.
+        trace = self._plain.formatException(record.exc_info) if record.exc_info else ""
+        self.bridge.heard.emit(_Entry(record.created, record.levelno, text, trace))
 
 
 class LogPanel(QWidget):
-    """Shows the records of Python's logging from INFO on, warnings coloured."""
+    """Shows the records of Python's logging from INFO on, warnings coloured, errors in geofit with their traceback."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self._entries: deque[_Entry] = deque(maxlen=LINES)
         self.text = QPlainTextEdit()
         self.text.setReadOnly(True)
         self.text.setMaximumBlockCount(LINES)
@@ -72,7 +88,7 @@ class LogPanel(QWidget):
         self.text.setPlaceholderText(self.tr("No messages yet: what geofit does is listed here."))
         copy, clear = QPushButton(self.tr("Copy all")), QPushButton(self.tr("Clear"))
         copy.clicked.connect(lambda: QGuiApplication.clipboard().setText(self.text.toPlainText()))
-        clear.clicked.connect(self.text.clear)
+        clear.clicked.connect(self._clear)
         buttons = QHBoxLayout()
         buttons.addStretch(1)
         buttons.addWidget(copy)
@@ -82,11 +98,11 @@ class LogPanel(QWidget):
         layout.setSpacing(6)
         layout.addWidget(self.text)
         layout.addLayout(buttons)
-        self._handler = _Handler()
-        self._handler.setFormatter(_Formatter({
+        self._words = {
             logging.WARNING: self.tr("warning"), logging.ERROR: self.tr("error"), logging.CRITICAL: self.tr("error"),
-        }))  # fmt: skip
-        self._handler.bridge.heard.connect(self._write)
+        }  # fmt: skip
+        self._handler = _Handler()
+        self._handler.bridge.heard.connect(self._hear)
         self._root = logging.getLogger()
         self._geofit = logging.getLogger("geofit")
         self._geofit.setLevel(logging.INFO)
@@ -96,35 +112,34 @@ class LogPanel(QWidget):
         """Hear no more; to be called before the window goes."""
         self._root.removeHandler(self._handler)
 
-    def _write(self, level: int, text: str) -> None:
+    def take_over(self, other: LogPanel) -> None:
+        """Begin with what another panel has heard, in the present language."""
+        for entry in other._entries:
+            self._hear(entry)
+
+    def _hear(self, entry: _Entry) -> None:
+        self._entries.append(entry)
         look = QTextCharFormat()
-        look.setForeground(QColor(FAIL) if level >= logging.ERROR else self._colour(level))
+        look.setForeground(QColor(FAIL) if entry.level >= logging.ERROR else self._colour(entry.level))
         cursor = QTextCursor(self.text.document())
         cursor.movePosition(QTextCursor.MoveOperation.End)
         if not self.text.document().isEmpty():
             cursor.insertBlock()
-        cursor.insertText(text, look)
+        cursor.insertText(self._line(entry), look)
         bar = self.text.verticalScrollBar()
         bar.setValue(bar.maximum())
+
+    def _line(self, entry: _Entry) -> str:
+        """Return the time, a word for what is graver than news, and the message in the user's language."""
+        at = time.strftime("%H:%M:%S", time.localtime(entry.created))
+        word = f"{self._words[entry.level]}: " if entry.level in self._words else ""
+        line = f"{at}  {word}{translated(entry.text) if isinstance(entry.text, Message) else entry.text}"
+        return f"{line}\n{entry.trace}" if entry.trace else line
+
+    def _clear(self) -> None:
+        self._entries.clear()
+        self.text.clear()
 
     def _colour(self, level: int) -> QColor:
         role = QPalette.ColorRole.Text if level < logging.WARNING else QPalette.ColorRole.Link
         return self.palette().color(role)
-
-
-class _Formatter(logging.Formatter):
-    """The time, a word for what is graver than news, and the message in the user's language."""
-
-    def __init__(self, words: Mapping[int, str]) -> None:
-        super().__init__()
-        self._words = words
-
-    def format(self, record: logging.LogRecord) -> str:
-        at = time.strftime("%H:%M:%S", time.localtime(record.created))
-        word = f"{self._words[record.levelno]}: " if record.levelno in self._words else ""
-        return f"{at}  {word}{_message(record)}"
-
-
-def _message(record: logging.LogRecord) -> str:
-    """Return a record's message in the user's language; what other libraries log stays as it is."""
-    return translated(record.msg) if isinstance(record.msg, Message) else record.getMessage()

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from panel_samples import prediction
 from PySide6.QtWidgets import QDialog
 
 from geofit.data.errors import FitError
@@ -12,7 +15,9 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.gui.dialogs.order import OrderDialog
 from geofit.project.building import make
+from geofit.project.commands import SetOrder
 from geofit.project.ordering import over_map
+from geofit.project.provenance import Row
 from geofit.site.order import compare_horizons
 
 
@@ -56,6 +61,31 @@ def test_horizons_are_pushed_apart_and_back_as_one_step_that_can_be_made_again(c
     stack.undo()
     crossing.idle()
     assert all(document.surface(name) is surface for name, surface in before.items())
+
+
+def test_horizons_that_cross_stay_a_warning_until_one_of_them_changes(crossing):
+    document, showing = crossing.document, crossing.window.showing
+    crossing.trigger("check_order")
+    crossing.idle()
+    failed = showing.verdict("up").checks.text
+    assert str(failed).endswith("order")
+    document.put_prediction(document.state.provenances["low"], replace(prediction(3), uncertainty=None))
+    crossing.idle()
+    assert showing.verdict("up").checks.text == failed
+    document.select("up")
+    crossing.window.fitting.exclude("up", (Row.of(document.site.horizons["up"], 3),))
+    crossing.window.fitting.fit("up")
+    crossing.idle()
+    assert showing.verdict("up").checks.text != failed
+    assert not showing.orders
+
+
+def test_an_order_that_was_checked_is_forgotten_with_another_order(crossing):
+    crossing.trigger("check_order")
+    crossing.idle()
+    crossing.window.fitting.push(SetOrder(("low", "up")))
+    crossing.idle()
+    assert not crossing.window.showing.orders
 
 
 def test_the_order_is_changed_by_a_dialog_and_undone(crossing, monkeypatch):

@@ -7,6 +7,7 @@ import os
 import signal
 import threading
 import time
+import traceback
 import weakref
 from contextlib import suppress
 
@@ -37,6 +38,21 @@ def failing(*, progress):
 
 def mistaken(*, progress):
     return 1 / 0
+
+
+class UnreadableError(Exception):
+    """Can be written by pickle and not read: its argument is not handed to the base class."""
+
+    def __init__(self, code):
+        super().__init__()
+        self.code = code
+
+    def __str__(self):
+        return f"code {self.code}"
+
+
+def unreadable(*, progress):
+    raise UnreadableError(7)
 
 
 def process_number(*, progress):
@@ -169,6 +185,19 @@ def test_a_failure_keeps_its_kind_across_the_process(owner, qtbot):
     with qtbot.waitSignal(task.ended, timeout=60_000):
         pass
     assert isinstance(errors[0], FitError)
+
+
+def test_a_mistake_in_another_process_keeps_the_place_where_it_was_made(owner, qtbot, caplog):
+    errors = []
+    for function in (mistaken, unreadable):
+        task = worker.run_in_process(owner, function, on_failed=errors.append)
+        with qtbot.waitSignal(task.ended, timeout=60_000):
+            pass
+    assert isinstance(errors[0], ZeroDivisionError)
+    assert "return 1 / 0" in "".join(traceback.format_exception(errors[0]))
+    assert str(errors[1]) == "UnreadableError: code 7"
+    assert "raise UnreadableError(7)" in "".join(traceback.format_exception(errors[1]))
+    assert "return 1 / 0" in caplog.text
 
 
 def pid_of_the_only_helper(owner, qtbot):
