@@ -35,7 +35,7 @@ _FIT = {
 
 def inputs_annex(report: AccuracyReport, t: Language) -> Chapter:
     """Lay out files, rejected rows and programs."""
-    return Chapter(t("Annex A: input files and programs"), _dense(_inputs(report, t)), follows=True)
+    return Chapter(t("Annex A: input files and programs"), _dense(_inputs(report, t)), follows=True, listed=False)
 
 
 def horizon_annex(report: AccuracyReport, t: Language) -> Chapter:
@@ -45,7 +45,7 @@ def horizon_annex(report: AccuracyReport, t: Language) -> Chapter:
         blocks.append(Heading(t("Horizon {name}", name=h.name)))
         blocks += [*_made(h, t), *group_blocks(h, ("section", "hole", "patch"), t), *_worst(h, t), *_seams(h, t)]
         blocks += _read_back(h, t)
-    return Chapter(t("Annex B: tables of the horizons"), _dense(blocks), follows=True)
+    return Chapter(t("Annex B: tables of the horizons"), _dense(blocks), follows=True, listed=False)
 
 
 def _dense(blocks: Iterable[Block]) -> tuple[Block, ...]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.languages import Language
+from geofit.report.digits import tick
 from geofit.report.style import LINE, MUTED, TEXT
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ def _edge(axes: Axes, scene: Scene, k: int, at: tuple[float, float], title: str)
     step = np.array([outward[0], -outward[1]])
     side = "right" if step[0] < -0.5 else "left" if step[0] > 0.5 else "center"
     for value, place in zip(ticks, scene.pixels(_along(k, ticks, at)), strict=True):
-        text = f"{value:,.0f}".replace(",", "\N{NO-BREAK SPACE}")
+        text = tick(value)
         line = {"arrowstyle": "-", "color": MUTED, "lw": 0.6, "shrinkA": 0, "shrinkB": 0}
         axes.annotate("", place, xytext=tuple(step * TICK), textcoords="offset points", annotation_clip=False,
                       arrowprops=line)  # fmt: skip

@@ -14,7 +14,9 @@ from geofit.data.errors import MissingDependencyError
 from geofit.data.languages import EN, Language
 from geofit.report.box import draw_boxed
 from geofit.report.cave_chapter import CaveFindings, cave_picture
+from geofit.report.digits import tick
 from geofit.report.furniture import north_arrow, scale_bar, scale_for
+from geofit.report.length_axis import upright
 from geofit.report.pictures import DOTS, TYPE, WIDTH, png
 from geofit.report.scene import mesh_scene
 from geofit.report.style import FAIL, LINE, MUTED, PAPER, TEXT, WARNING, drawing
@@ -221,20 +223,15 @@ def _frame(axes: Axes, words: tuple[str, str]) -> None:
     wide, tall = axes.get_window_extent().size
     for axis, extent in ((axes.xaxis, wide), (axes.yaxis, tall)):
         axis.set_major_locator(MaxNLocator(max(int(extent / 200 * 25.4 / 22), 2), steps=[1, 2, 5, 10]))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: _coordinate(value)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: tick(value)))
     axes.grid(color=LINE, lw=0.35, zorder=0)
     axes.set_axisbelow(True)
     axes.tick_params(length=2.5, width=0.6, labelsize=6.2)
-    for label in axes.get_yticklabels():
-        label.set(rotation=90, va="center")
+    upright(axes)
     for spine in axes.spines.values():
         spine.set(color=TEXT, linewidth=0.8)
     axes.set_xlabel(words[0], fontsize=7, labelpad=2)
     axes.set_ylabel(words[1], fontsize=7, labelpad=2)
-
-
-def _coordinate(value: float) -> str:
-    return f"{value:,.0f}".replace(",", "\N{NO-BREAK SPACE}").replace("-", "−")
 
 
 def _handles(found: CaveFindings, t: Language) -> list[object]:

@@ -62,7 +62,6 @@ def document(
     facts = ((t("Coordinate system"), report.crs or t("not stated")), (t("Program"), version))
     picture = Paragraph(translate(missing_picture, t), "warning") if missing_picture else Picture(report.picture, "")
     drawings = sections_chapter(report, t)
-    annexes = [inputs_annex(report, t), horizon_annex(report, t)]
     chapters = [
         cover(title, facts, picture, report.date, t, warning),
         _summary(report, t),
@@ -71,9 +70,9 @@ def document(
         *bodies,
         Chapter(t("The site as a whole"), structure_blocks(report, t), follows=True),
         interventions(report, t),
-        *annexes,
+        inputs_annex(report, t),
+        horizon_annex(report, t),
     ]
-    unlisted = frozenset(block.text for one in annexes for block in one.blocks if isinstance(block, Heading))
     return ReportDocument(
         title=site,
         subject=t("Accuracy report of the geological surfaces"),
@@ -84,7 +83,6 @@ def document(
         chapters=tuple(chapters),
         contents=t("Contents"),
         reference=reference(title, t),
-        unlisted=unlisted,
     )
 
 

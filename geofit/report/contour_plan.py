@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from geofit.data.languages import EN, Language
 from geofit.data.lengths import LENGTH_UNITS, LengthUnit, unit_mark
 from geofit.report.accuracy_report import PlanSheet
+from geofit.report.digits import tick
 from geofit.report.furniture import north_arrow, scale_bar, scale_for, scale_text
-from geofit.report.length_axis import number_axis
+from geofit.report.length_axis import number_axis, upright
 from geofit.report.result import HorizonResult
 from geofit.report.style import CORE, LINE, MUTED, PAPER, TEXT, drawing, kind_style
 from geofit.report.view import rims
@@ -27,7 +28,7 @@ __all__ = ["draw_contour_plan", "draw_map", "map_corners", "map_handles", "plan_
 Floats = NDArray[np.float64]
 
 #: Width of the sheet and of its drawing, margins, and most and least height of the drawing, mm.
-SHEET, DRAWING, LEFT, BELOW, ABOVE, TALLEST, LOWEST = 174.0, 140.0, 19.0, 22.0, 3.0, 165.0, 48.0
+SHEET, DRAWING, LEFT, BELOW, ABOVE, TALLEST, LOWEST = 174.0, 140.0, 19.0, 24.5, 3.0, 165.0, 48.0
 #: Every so many contours one is heavy and labelled.
 HEAVY = 5
 #: Triangles under the contours, metres; vertices of the contours are exact.
@@ -127,7 +128,7 @@ def _contours(axes: Axes, result: HorizonResult, step: float, unit: LengthUnit) 
         heavy = round(one.elevation / step) % HEAVY == 0
         axes.plot(*one.line.T, color="#7a5a2f" if heavy else "#b89b72", lw=1.0 if heavy else 0.55, zorder=2)
         if heavy:
-            _label(axes, one.line, f"{round(one.elevation / LENGTH_UNITS[unit], 6):g}", labelled, reach)
+            _label(axes, one.line, tick(one.elevation / LENGTH_UNITS[unit]), labelled, reach)
 
 
 def _label(axes: Axes, line: Floats, text: str, labelled: list[Floats], reach: float) -> None:
@@ -198,8 +199,7 @@ def _frame(axes: Axes, t: Language, unit: LengthUnit) -> None:
     axes.grid(color=LINE, lw=0.35, zorder=0)
     axes.set_axisbelow(True)
     axes.tick_params(length=2.5, width=0.6, labelsize=6.2)
-    for label in axes.get_yticklabels():
-        label.set(rotation=90, va="center")
+    upright(axes)
     for spine in axes.spines.values():
         spine.set(color=TEXT, linewidth=0.8)
     axes.set_xlabel(t("Easting, {unit}", unit=unit_mark(unit)), fontsize=7, labelpad=2)

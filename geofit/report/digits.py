@@ -18,6 +18,7 @@ __all__ = [
     "metres",
     "place",
     "share",
+    "tick",
     "volume",
 ]
 
@@ -95,6 +96,17 @@ def place(value: float | None) -> str:
     '3100012.35'
     """
     return NOTHING if value is None or not math.isfinite(value) else f"{value:.2f}".replace("-", "−")
+
+
+def tick(value: float) -> str:
+    """Write a round number of an axis or a contour, with the groups of :func:`count`.
+
+    Examples
+    --------
+    >>> tick(-8900.0), tick(0.25), tick(3_100_500.0).split()
+    ('−8900', '0.25', ['3', '100', '500'])
+    """
+    return _grouped(f"{round(value, 6) + 0.0:.10g}".replace("-", "−"))
 
 
 def given(value: float) -> str:

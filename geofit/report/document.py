@@ -124,20 +124,21 @@ class Chapter:
     """A part of the document; ``verdict`` is next to its title.
 
     A chapter begins on a new page unless it ``follows`` on: then it begins where there is room for a good part of it.
+    The contents leave out the headings inside a chapter that is not ``listed`` in full.
     """
 
     title: str
     blocks: tuple[Block, ...]
     verdict: VerdictMark | None = None
     follows: bool = False
+    listed: bool = True
 
 
 @dataclass(frozen=True)
 class ReportDocument:
     """A whole report in one language: the first chapter is the cover, ``contents`` titles the list of the others.
 
-    ``reference`` is in the running head: document number and revision. ``unlisted`` are headings that the contents
-    leave out.
+    ``reference`` is in the running head: document number and revision.
     """
 
     title: str
@@ -149,4 +150,3 @@ class ReportDocument:
     chapters: tuple[Chapter, ...]
     contents: str = ""
     reference: str = ""
-    unlisted: frozenset[str] = frozenset()

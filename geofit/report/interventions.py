@@ -30,7 +30,7 @@ def interventions(report: AccuracyReport, t: Language) -> Chapter:
             blocks.append(Paragraph(nothing))
         for name, more in found:
             blocks += [Heading(name, 3), *more]
-    return Chapter(t("Excluded points, edits and suggestions"), tuple(blocks))
+    return Chapter(t("Excluded points, edits and suggestions"), tuple(blocks), follows=True)
 
 
 def _excluded(h: HorizonReport, t: Language) -> list[Block]:

@@ -27,7 +27,7 @@ from geofit.report.document import (
     VerdictMark,
 )
 from geofit.report.fonts import pdf_fonts
-from geofit.report.pdf_table import draw_table, table_height
+from geofit.report.pdf_table import draw_table, table_height, table_start
 from geofit.report.pdf_text import POINT, Pen, Typesetter
 from geofit.report.style import FAIL, LINE, MUTED, PASS, TEXT, WARNING, rgb
 
@@ -37,6 +37,9 @@ __all__ = ["write_pdf"]
 SIDE, TOP, BOTTOM = 18.0, 24.0, 20.0
 BODY, QUIET, SMALL, TINY = 8.6, 7.6, 7.0, 6.4
 LEADING = 1.45
+#: Letters of headings by their level, and room above them, mm.
+HEADS = {2: Pen(11.5, TEXT, bold=True), 3: Pen(9, TEXT, bold=True)}
+ABOVE_HEADING = {2: 3.5, 3: 2.0}
 #: No picture is higher than this, mm: two fit on a page. One to scale may be higher.
 HIGHEST = 104.0
 #: A last page with less than this on it, mm, is saved if these shares of the usual room between rows leave it empty.
@@ -48,8 +51,6 @@ FIELD, SIGNED, LOWEST_COVER = 8.6, 9.0, 40.0
 DOTS = 200.0
 #: A chapter that follows on begins on a page if so much of it is left, mm.
 LEAST_START = 90.0
-#: A table up to this share of a page stands whole with its heading.
-WHOLE = 1 / 3
 
 
 def write_pdf(document: ReportDocument, images: Mapping[str, bytes], path: Path) -> None:
@@ -260,10 +261,10 @@ class _Pages(FPDF):
 
     def _heading(self, block: Heading) -> None:
         if self.y > TOP + 12:
-            self.set_y(self.y + (3.5 if block.level == 2 else 2))
+            self.set_y(self.y + ABOVE_HEADING[block.level])
         if block.level == 2:
             self.start_section(block.text, level=1)
-        self._lines(block.text, Pen(11.5 if block.level == 2 else 9, TEXT, bold=True), 5.5)
+        self._lines(block.text, HEADS[block.level], 5.5)
         self.set_y(self.y + 1)
 
     def _lines(self, text: str, pen: Pen, height: float, indent: float = 0.0) -> None:
@@ -322,6 +323,8 @@ class _Pages(FPDF):
             if i % 2 == 0 and self.y + height > self.foot:
                 self.add_page()
             self.rect(x, self.y, wide, height)
+            if i % 2 == 0 and i + 1 == len(block.items):
+                self.rect(x + wide, self.y, wide, height)
             self.type.draw(x + 1.5, self.y + 2.2, label, Pen(TINY, MUTED))
             self.type.draw(x + 1.5, self.y + 5.9, self.type.cut(text, wide - 3, value), value)
             if i % 2 == 1 or i + 1 == len(block.items):
@@ -332,16 +335,24 @@ class _Pages(FPDF):
         data = images.get(block.name)
         if data is None:
             return
-        wide, tall = _size(data, self.epw, self.highest, to_scale=block.to_scale)
-        pen = Pen(QUIET, MUTED)
-        line = QUIET * POINT * LEADING
-        caption = len(self.type.lines(block.caption, self.epw, pen)) * line
-        if self.y + tall + caption + 3 > self.foot:
+        wide, tall = self._picture_size(block, data)
+        if self.y + tall + self._caption(block) + 3 > self.foot:
             self.add_page()
         self.image(io.BytesIO(data), SIDE, self.y, wide, tall, alt_text=block.caption)
         self.set_xy(SIDE, self.y + tall + 1.8)
-        self._lines(block.caption, pen, line)
+        self._lines(block.caption, Pen(QUIET, MUTED), QUIET * POINT * LEADING)
         self.set_y(self.y + 3)
+
+    def _picture_size(self, block: Picture, data: bytes) -> tuple[float, float]:
+        """Return width and height of a picture on the page, mm: the whole width unless it would be too high."""
+        wide, tall = (int.from_bytes(data[k : k + 4], "big") for k in (16, 20))
+        if block.to_scale:
+            return wide / DOTS * 25.4, tall / DOTS * 25.4
+        scale = min(self.epw / wide, self.highest / tall)
+        return wide * scale, tall * scale
+
+    def _caption(self, block: Picture) -> float:
+        return len(self.type.lines(block.caption, self.epw, Pen(QUIET))) * QUIET * POINT * LEADING
 
     def _signatures(self, block: Signatures) -> None:
         first, height = 26.0, SIGNED
@@ -371,33 +382,27 @@ class _Pages(FPDF):
         height = 0.0
         for block in blocks:
             if isinstance(block, Heading):
-                height += 11 if block.level == 2 else 8
+                height += (
+                    ABOVE_HEADING[block.level]
+                    + 5.5 * len(self.type.lines(block.text, self.epw, HEADS[block.level]))
+                    + 1
+                )
             elif isinstance(block, Picture):
-                tall = 0.0
                 if block.name in images:
-                    tall = _size(images[block.name], self.epw, self.highest, to_scale=block.to_scale)[1]
-                return height + tall + 10
+                    height += self._picture_size(block, images[block.name])[1] + self._caption(block) + 3
+                return height
             elif isinstance(block, ReportTable):
-                whole = table_height(block, self.epw, self.type, self.share)
-                return height + (whole if whole <= WHOLE * self.empty_page else 38.0)
+                return height + table_start(block, self.epw, self.type, self.empty_page, self.share)
             elif isinstance(block, Signatures):
                 return height + 5 + SIGNED * len(block.roles)
             elif isinstance(block, Facts | Fields):
                 height += 20
             else:
-                height += 4 * len(self.type.lines(block.text, self.epw, Pen(BODY))) + 2
+                pen = Pen(QUIET) if block.style == "quiet" else Pen(BODY)
+                height += pen.size * POINT * LEADING * len(self.type.lines(block.text, self.epw, pen)) + 1.8
                 if height > 40:
                     return height
         return height
-
-
-def _size(data: bytes, room: float, highest: float, *, to_scale: bool) -> tuple[float, float]:
-    """Return width and height of a picture on the page, mm: the whole width unless it would be too high."""
-    wide, tall = (int.from_bytes(data[k : k + 4], "big") for k in (16, 20))
-    if to_scale:
-        return wide / DOTS * 25.4, tall / DOTS * 25.4
-    scale = min(room / wide, highest / tall)
-    return wide * scale, tall * scale
 
 
 #: Height of a line of the contents by its level, mm.
@@ -408,7 +413,12 @@ def _draw_contents(pdf: FPDF, outline: list[OutlineSection]) -> None:
     """List chapters, and as many of their headings as there is room for, with their pages."""
     assert isinstance(pdf, _Pages)
     y, room = TOP + 12.0, pdf.foot - TOP - 14.0
-    entries = [one for one in outline if one.level == 0 or one.name not in pdf.document.unlisted]
+    in_full = {chapter.title for chapter in pdf.document.chapters if chapter.listed}
+    entries, chapter = [], ""
+    for one in outline:
+        chapter = one.name if one.level == 0 else chapter
+        if one.level == 0 or chapter in in_full:
+            entries.append(one)
     if sum(_ENTRIES[one.level] for one in entries) > room:
         entries = [one for one in outline if one.level == 0]
     for one in entries:

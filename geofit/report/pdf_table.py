@@ -11,7 +11,7 @@ from geofit.report.document import Cell, CheckMark, Column, ReportTable, Verdict
 from geofit.report.pdf_text import Pen, Typesetter
 from geofit.report.style import FAIL, MUTED, PASS, WARNING, rgb
 
-__all__ = ["draw_table", "plain_text", "table_height"]
+__all__ = ["draw_table", "plain_text", "table_height", "table_start"]
 
 SIZE, HASH_SIZE = 7.4, 5.2
 LINE = 3.9
@@ -21,8 +21,9 @@ PADDING, DENSE = (0.9, 1.1), 0.45
 NARROWEST, WIDEST = 17.0, 44.0
 #: A table without a wide column gives each column at most this much more than it needs, mm.
 AIRIEST = 9.0
-#: So many rows stand together at the foot and at the head of a page, or none.
-FEWEST = 4
+#: So many rows stand together at the foot and at the head of a page, or none; a table up to this share of a page is
+#: not parted.
+FEWEST, WHOLE = 4, 1 / 3
 #: A longer cell would not fit on a page.
 LONGEST = 700
 RULE = "#c3cad2"
@@ -65,6 +66,13 @@ def table_height(table: ReportTable, room: float, type_: Typesetter, share: floa
     return laid.head_height + sum(laid.heights)
 
 
+def table_start(table: ReportTable, room: float, type_: Typesetter, page: float, share: float = 1.0) -> float:
+    """Return what of a table is never parted from its head, mm: all of a short one, else the first rows."""
+    laid = LaidTable(table, room, type_, share)
+    total = laid.head_height + sum(laid.heights)
+    return total if total <= WHOLE * page else laid.head_height + sum(laid.heights[:FEWEST])
+
+
 def draw_table(
     pdf: FPDF, type_: Typesetter, table: ReportTable, bottom: Callable[[], float], turn: Callable[[], None],
     page: float, share: float = 1.0,
@@ -104,7 +112,7 @@ def page_ends(laid: LaidTable, room: float, page: float) -> list[int]:
     if total <= room:
         return [len(laid.rows)]
     ends: list[int] = []
-    if total <= page / 3 or _fitting(laid, 0, room) < min(FEWEST, len(laid.rows)):
+    if total <= WHOLE * page or _fitting(laid, 0, room) < min(FEWEST, len(laid.rows)):
         ends, room = [0], page
     first = 0
     while first < len(laid.rows):

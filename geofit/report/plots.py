@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from geofit.data.languages import EN, Language, translate
 from geofit.data.site import Hole
+from geofit.report.digits import tick
 from geofit.report.histogram import histogram
 from geofit.report.result import HorizonResult
 from geofit.report.style import CORE, LINE, MUTED, TEXT, bands, kind_style, quiet_axes
@@ -164,7 +165,7 @@ def _contours(axes: Axes, result: HorizonResult) -> None:
 
     levels = MaxNLocator(9, steps=[1, 2, 5, 10]).tick_values(np.nanmin(z), np.nanmax(z))
     lines = axes.contour(x, y, np.ma.masked_invalid(z), levels=levels, colors="#bcc6d0", linewidths=0.7, zorder=0)
-    axes.clabel(lines, fmt="%g", fontsize=7, colors=MUTED)
+    axes.clabel(lines, fmt=tick, fontsize=7, colors=MUTED)
 
 
 def _ticks(low: float, high: float) -> list[float]:
@@ -189,7 +190,7 @@ def map_axes(axes: Axes, xlabel: str, ylabel: str) -> None:
     axes.margins(0.03)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(5))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}".replace(",", " ")))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: tick(value)))
     axes.set_xlabel(xlabel)
     axes.set_ylabel(ylabel)
     quiet_axes(axes)

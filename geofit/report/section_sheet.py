@@ -12,6 +12,7 @@ from geofit.data.languages import EN, Language, together, translate
 from geofit.data.points import PointSet
 from geofit.data.site import Ground, Section, Site
 from geofit.report.accuracy_report import SectionSheet
+from geofit.report.digits import tick
 from geofit.report.furniture import exaggeration_for, scale_bar, scale_for, scale_text
 from geofit.report.profile import THICKNESS, Profile, along_polyline
 from geofit.report.style import LINE, MUTED, PAPER, TEXT, drawing, horizon_colours, kind_style
@@ -109,12 +110,12 @@ def draw_section(
             for line in lines:
                 _profile(axes, line, colours[name], ground)
         near = max(THICKNESS * length, 1.0)
-        _holes(axes, section, site, near, (low, high))
+        kinds = _holes(axes, section, site, near, (low, high))
         for name, found in points.items():
             _contacts(axes, section, found, near, colours[name])
         _frame(axes, section, length, t)
         scale_bar(axes, sheet.scale, wide - 44.0, -13.5)
-        _legend(figure, cut, colours, site, near, t)
+        _legend(figure, cut, colours, kinds, near, t, ground=ground is not None)
     return figure
 
 
@@ -166,9 +167,10 @@ def _profile(axes: Axes, profile: Profile, colour: str, ground: tuple[Floats, Fl
         axes.plot(np.where(shown, s, np.nan), np.where(shown, z, np.nan), color=colour, lw=1.5, ls=style, zorder=4)
 
 
-def _holes(axes: Axes, section: Section, site: Site, near: float, limits: tuple[float, float]) -> None:
-    """Draw the holes within a distance of the section, projected onto it, with their names above."""
+def _holes(axes: Axes, section: Section, site: Site, near: float, limits: tuple[float, float]) -> set[str]:
+    """Draw the holes near the section, projected onto it, with their names above; return their kinds."""
     named: list[float] = []
+    kinds = set()
     low, high = limits
     length = axes.get_xlim()[1]
     for hole in sorted(site.holes, key=lambda one: float(along_polyline(section.line, one.xyz[:1, :2])[0][0])):
@@ -179,6 +181,7 @@ def _holes(axes: Axes, section: Section, site: Site, near: float, limits: tuple[
         within = (z >= low) & (z <= high)
         if not within.any():
             continue
+        kinds.add(hole.kind)
         axes.plot(s, z, color=kind_style(hole.kind)[1], lw=0.9, zorder=3)
         axes.plot(s[:1], z[:1], marker="v", ms=3.2, color=kind_style(hole.kind)[1], lw=0, zorder=6, clip_on=False)
         if all(abs(s[0] - other) > 0.028 * length for other in named):
@@ -187,6 +190,7 @@ def _holes(axes: Axes, section: Section, site: Site, near: float, limits: tuple[
                 hole.name, (s[0], min(max(z[0], low), high)), xytext=(0, 4), textcoords="offset points", rotation=90,
                 size=5.6, color=TEXT, ha="center", va="bottom", zorder=7, annotation_clip=False,
             )  # fmt: skip
+    return kinds
 
 
 def _contacts(axes: Axes, section: Section, points: PointSet, near: float, colour: str) -> None:
@@ -202,7 +206,7 @@ def _frame(axes: Axes, section: Section, length: float, t: Language) -> None:
     axes.xaxis.set_major_locator(MaxNLocator(8, steps=[1, 2, 5, 10]))
     axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}".replace(",", "\N{NO-BREAK SPACE}")))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: tick(value)))
     axes.grid(axis="y", color=LINE, lw=0.5, zorder=0)
     axes.set_axisbelow(True)
     axes.tick_params(length=2.5, width=0.6, labelsize=6.5)
@@ -223,17 +227,17 @@ def _frame(axes: Axes, section: Section, length: float, t: Language) -> None:
 
 
 def _legend(
-    figure: Figure, cut: Mapping[str, Sequence[Profile]], colours: Mapping[str, str], site: Site,
-    near: float, t: Language,
+    figure: Figure, cut: Mapping[str, Sequence[Profile]], colours: Mapping[str, str], kinds: set[str],
+    near: float, t: Language, *, ground: bool,
 ) -> None:  # fmt: skip
     from matplotlib.lines import Line2D
 
     handles = [Line2D([], [], color=colours[name], lw=1.8, label=name) for name, lines in cut.items() if lines]
-    if site.ground is not None:
+    if ground:
         handles.append(Line2D([], [], color=GROUND, lw=1.3, label=t("ground surface")))
     handles.append(Line2D([], [], color=MUTED, lw=0, marker="o", ms=3, mfc=PAPER, mec=MUTED,
                           label=t("contacts and holes within {distance:.0f} m", distance=float(near))))  # fmt: skip
-    for hole_kind in sorted({hole.kind for hole in site.holes}):
+    for hole_kind in sorted(kinds):
         handles.append(Line2D([], [], color=kind_style(hole_kind)[1], lw=0.9, label=translate(hole_kind, t)))
     height = figure.get_size_inches()[1] / MM
     figure.legend(

@@ -11,19 +11,29 @@ import pytest
 from results import examined, horizon
 
 from geofit.data.languages import EN, ZH
-from geofit.data.site import Ground, Section, Site
+from geofit.data.site import Ground, Hole, Section, Site
 from geofit.data.title_block import Revision, TitleBlock
 from geofit.report import fonts
 from geofit.report.chapters import document
-from geofit.report.document import Chapter, Column, Heading, Picture, ReportDocument, ReportTable, Signatures
+from geofit.report.document import (
+    Chapter,
+    Column,
+    Heading,
+    Paragraph,
+    Picture,
+    ReportDocument,
+    ReportTable,
+    Signatures,
+)
 from geofit.report.furniture import exaggeration_for, scale_for, scale_text
 from geofit.report.gather import accuracy_report
 from geofit.report.html import write_html
+from geofit.report.length_axis import upright
 from geofit.report.pdf import write_pdf
 from geofit.report.pdf_table import FEWEST, LaidTable, page_ends
 from geofit.report.pictures import draw_pictures, draw_sections, draw_site
 from geofit.report.profile import along_polyline, profiles, report_sections
-from geofit.report.section_sheet import section_sheet
+from geofit.report.section_sheet import draw_section, section_sheet
 
 pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
 Image = pytest.importorskip("PIL.Image", reason="Pillow comes with fpdf2")
@@ -203,6 +213,74 @@ def test_a_few_lines_do_not_take_a_page_of_their_own(rows, pages, tmp_path):
     texts, _ = _pages(tmp_path / "r.pdf")
     assert len(texts) == 1 + pages
     assert "last" in texts[-1]
+
+
+def test_a_heading_stands_on_the_page_of_its_table_wherever_it_falls(tmp_path):
+    columns = (Column("a"), Column("b", "number"))
+
+    def chapter(k):
+        lines = tuple(Paragraph(f"line {i}", "quiet") for i in range(k % 6))
+        filler = ReportTable(columns, tuple((f"r{i}", str(i)) for i in range(14 + k // 6)))
+        table = ReportTable(columns, tuple((f"first {k}." if i == 0 else f"t{i}", str(i)) for i in range(10)))
+        return Chapter(f"Chapter {k}", (*lines, filler, Heading(f"Tail {k}.", 3), table))
+
+    chapters = (Chapter("Cover", ()), *map(chapter, range(84)))
+    write_pdf(ReportDocument("R", "S", "R", "2026-01-02", "en", "geofit", chapters), {}, tmp_path / "r.pdf")
+    texts, _ = _pages(tmp_path / "r.pdf")
+    torn = [k for k in range(84) for text in texts if (f"Tail {k}." in text) != (f"first {k}." in text)]
+    assert not torn
+
+
+def test_the_contents_list_a_heading_although_an_annex_has_one_of_the_same_name(tmp_path):
+    chapters = (
+        Chapter("Cover", ()),
+        Chapter("Text", (Heading("Checks"),)),
+        Chapter("Annex", (Heading("Checks"),), listed=False),
+    )
+    pages = ReportDocument("R", "S", "R", "2026-01-02", "en", "geofit", chapters, contents="Contents")
+    write_pdf(pages, {}, tmp_path / "r.pdf")
+    texts, _ = _pages(tmp_path / "r.pdf")
+    assert texts[1].count("Checks") == 1
+
+
+def test_two_lines_about_the_site_share_their_page_with_the_interventions(report, tmp_path):
+    whole = document(report, EN)
+    site, others = (one for one in whole.chapters if one.title.startswith(("The site as", "Excluded")))
+    chapters = (whole.chapters[0], replace(site, follows=False), others)
+    write_pdf(replace(whole, chapters=chapters, contents=""), {}, tmp_path / "r.pdf")
+    texts, _ = _pages(tmp_path / "r.pdf")
+    assert "Order of the horizons" in texts[1]
+    assert "No point was left out by hand" in texts[1]
+
+
+def test_the_legend_of_a_section_names_the_kinds_of_holes_that_are_drawn():
+    near, far = ([[x, 0.0, 1500.0], [x, 0.0, 1400.0]] for x in (500.0, 9000.0))
+    depth = np.array([0.0, 100.0])
+    holes = (Hole("ZK1", "borehole", depth, np.array(near)), Hole("PD1", "adit", depth, np.array(far)))
+    section = Section("L", np.array([[0.0, 0.0], [1000.0, 0.0]]))
+    ground = Ground(np.array([0.0, 1000.0]), np.array([-10.0, 10.0]), np.full((2, 2), 1500.0))
+    site = Site("dam", {}, ground=ground, holes=holes)
+    figure = draw_section(section_sheet(section, site, {}, "L"), section, site, {}, {})
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "borehole" in words
+    assert "adit" not in words
+
+
+@pytest.mark.parametrize("places", [(0.0, 100.0), (3.0, 50.0, 97.0)])
+def test_numbers_along_a_vertical_axis_end_with_it(places):
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(3, 2), dpi=200)
+    canvas, axes = FigureCanvasAgg(figure), figure.add_axes((0.2, 0.05, 0.7, 0.93))
+    axes.set_ylim(7_822_000.0, 7_822_100.0)
+    axes.set_yticks([7_822_000.0 + place for place in places], [f"7 822 {place:03.0f}" for place in places])
+    upright(axes)
+    canvas.draw()
+    frame = axes.get_window_extent()
+    boxes = [label.get_window_extent() for label in axes.get_yticklabels()]
+    assert all(frame.y0 - 2 <= box.y0 and box.y1 <= frame.y1 + 2 for box in boxes)
+    assert all(box.height > box.width for box in boxes)
 
 
 @pytest.mark.parametrize(
