@@ -102,7 +102,7 @@ def read_back(
             angle,
             ANGLE,
             "deg",
-            _words(seams, "angle", "deg"),
+            _words(seams, "angle", "°"),
         ),
         Check(
             "read-back validity",

@@ -296,7 +296,10 @@ def _data(found: CaveFindings, t: Language) -> list[Block]:
 
 def _method(found: CaveFindings, t: Language) -> list[Block]:
     rows = (
-        (t("sections"), t("four quarter ellipses through left, right, upper and lower wall, tapered between stations")),
+        (
+            t("cross-sections"),
+            t("four quarter ellipses through left, right, upper and lower wall, tapered between stations"),
+        ),
         (t("radius of the smooth union at junctions"), digits.length(found.body.blend)),
         (t("spacing of the triangles"), digits.length(found.spacing)),
     )

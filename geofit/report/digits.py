@@ -11,6 +11,7 @@ __all__ = [
     "count",
     "degrees",
     "equals",
+    "figure",
     "given",
     "kilobytes",
     "length",
@@ -131,8 +132,19 @@ def count(value: float | None) -> str:
     return NOTHING if value is None or not math.isfinite(value) else _grouped(f"{value:.0f}".replace("-", "−"))
 
 
+def figure(value: float) -> str:
+    """Write a number with four significant digits or all before the point.
+
+    Examples
+    --------
+    >>> figure(44983.2).split(), figure(-0.123456)
+    (['44', '983'], '−0.1235')
+    """
+    return count(value) if abs(value) >= 1000 else f"{value:.4g}".replace("-", "−")
+
+
 def volume(value: float | None) -> str:
-    """Write cubic metres with four significant digits or all before the point.
+    """Write cubic metres with the digits of :func:`figure`.
 
     Examples
     --------
@@ -150,8 +162,7 @@ def area(value: float | None) -> str:
 def _measure(value: float | None, unit: str) -> str:
     if value is None or not math.isfinite(value):
         return NOTHING
-    text = count(value) if abs(value) >= 1000 else f"{value:.4g}".replace("-", "−")
-    return f"{text}{_GAP}{unit}"
+    return f"{figure(value)}{_GAP}{unit}"
 
 
 def share(value: float | None) -> str:
@@ -162,7 +173,7 @@ def share(value: float | None) -> str:
     >>> share(0.9021).split()
     ['90.2', '%']
     """
-    return NOTHING if value is None or not math.isfinite(value) else f"{100 * value:.1f}{_GAP}%"
+    return NOTHING if value is None or not math.isfinite(value) else f"{100 * value:.1f}{_GAP}%".replace("-", "−")
 
 
 def kilobytes(value: float) -> str:

@@ -23,6 +23,8 @@ NO_START = frozenset("，。；：、？！）】》」』”’%‰…·,.;:?!)
 NO_END = frozenset("（【《「『“‘([{")
 #: Ends of a line in a word too long for it: in paths, after these.
 BREAKS = frozenset("/\\_-|,;")
+#: What stays with the number or the comma before it.
+UNITS = frozenset(("%", "‰", "m", "mm", "km", "µm", "m²", "m³", "mD", "kB", "ε", "°"))
 #: Share of the size from the middle of a line down to the foot of its letters.
 DROP = 0.35
 
@@ -58,10 +60,14 @@ class Typesetter:
         """Break a text into lines no wider than ``room``, mm: at spaces, and between Chinese characters."""
         done: list[str] = []
         for part in text.split("\n"):
-            line, wide = "", 0.0
-            for piece in _pieces(part):
+            line, wide, last = "", 0.0, ""
+            pieces = _pieces(part)
+            for k, piece in enumerate(pieces):
                 width = self.width(piece, pen)
                 if line and wide + self.width(piece.rstrip(" "), pen) > room:
+                    # No Chinese character stands alone in the last line.
+                    if k == len(pieces) - 1 and _alone(piece) and _alone(last) and last != line:
+                        line, piece = line.removesuffix(last), last + piece
                     done.append(line.rstrip(" "))
                     line, wide = "", 0.0
                 while width > room and self.width(piece.rstrip(" "), pen) > room:
@@ -69,7 +75,7 @@ class Typesetter:
                     done.append(head)
                     piece = piece[len(head) :]
                     width = self.width(piece, pen)
-                line, wide = line + piece, wide + width
+                line, wide, last = line + piece, wide + width, piece
             done.append(line.rstrip(" "))
         return done
 
@@ -137,7 +143,25 @@ def _pieces(text: str) -> list[str]:
         ):
             pieces.append(word)
             word = ""
-    return [*pieces, word] if word else pieces
+    return _with_units([*pieces, word] if word else pieces)
+
+
+def _with_units(pieces: list[str]) -> list[str]:
+    """Join a unit with the number or the comma before it."""
+    joined: list[str] = []
+    for piece in pieces:
+        before = joined[-1] if joined else ""
+        number = before.endswith(" ") and before[-2:-1].isdigit()
+        if (number or before.endswith("，")) and piece.rstrip(" ,.;:)，。；：）") in UNITS:
+            joined[-1] += piece
+        else:
+            joined.append(piece)
+    return joined
+
+
+def _alone(piece: str) -> bool:
+    """Whether a piece is one Chinese character, with its punctuation."""
+    return sum(_wide(c) and c not in NO_START and c not in NO_END for c in piece) == 1 and " " not in piece
 
 
 @lru_cache(maxsize=4096)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from geofit.report.scene import Scene
 
-__all__ = ["deviation_map", "histogram", "legend", "map_axes", "map_shape", "site_plan", "space"]
+__all__ = ["colour_scale", "deviation_map", "histogram", "legend", "map_axes", "map_shape", "site_plan", "space"]
 
 Floats = NDArray[np.float64]
 
@@ -35,20 +35,25 @@ BELOW = 0.1
 
 def space(axes: Axes, scene: Scene, t: Language = EN) -> None:
     """Show the picture in space with the scale of its colours, and say from where it is seen."""
+    axes.imshow(scene.image, interpolation="antialiased")
+    axes.set_axis_off()
+    colour_scale(axes, scene.limits, t("Elevation, m"))
+    axes.text(1.0, -BELOW, translate(scene.caption, t), size=7.5, color=MUTED, ha="right", transform=axes.transAxes)
+
+
+def colour_scale(axes: Axes, limits: tuple[float, float], title: str) -> None:
+    """Put the scale of the colours below a picture in space, where nothing is drawn."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
     from geofit.report.scene import elevation_colours
 
-    axes.imshow(scene.image, interpolation="antialiased")
-    axes.set_axis_off()
-    # Below the picture, where no surface stands.
     scale = axes.inset_axes((0.02, -BELOW, 0.26, 0.022))
-    colours = ScalarMappable(Normalize(*scene.limits), elevation_colours())
-    bar = axes.figure.colorbar(colours, cax=scale, ticks=_ticks(*scene.limits), orientation="horizontal")
+    colours = ScalarMappable(Normalize(*limits), elevation_colours())
+    bar = axes.figure.colorbar(colours, cax=scale, ticks=_ticks(*limits), orientation="horizontal")
     bar.outline.set_visible(False)
-    scale.set_title(t("Elevation, m"), fontsize=7.5, fontweight="normal", color=MUTED, pad=3)
-    axes.text(1.0, -BELOW, translate(scene.caption, t), size=7.5, color=MUTED, ha="right", transform=axes.transAxes)
+    scale.set_title(title, fontsize=7.5, fontweight="normal", color=MUTED, pad=3)
+    scale.xaxis.set_major_formatter(lambda value, _: tick(value))
     scale.tick_params(length=0, pad=2)
 
 

@@ -105,7 +105,7 @@ def _table(found: PoresFindings, t: Language) -> list[Block]:
         Column(t("Figure")),
         Column(t("Voxels"), "number"),
         Column(t("Rebuilt"), "number"),
-        Column(t("Change"), "number"),
+        Column(t("Relative change"), "number"),
     )
     rows = tuple(
         (name, shown, after[name][0], _change(value, after[name][1])) for name, (shown, value) in before.items()
@@ -143,7 +143,7 @@ def _column(figures: PoreFigures, t: Language) -> dict[str, tuple[str, float | N
 
 
 def _darcy(square_metres: float) -> str:
-    return f"{square_metres / MILLIDARCY:.4g}" if np.isfinite(square_metres) else "–"
+    return digits.figure(square_metres / MILLIDARCY) if np.isfinite(square_metres) else "–"
 
 
 def _change(before: float | None, after: float | None) -> str:

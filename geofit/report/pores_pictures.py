@@ -10,6 +10,7 @@ import numpy as np
 from geofit.data.errors import MissingDependencyError
 from geofit.data.languages import EN, Language
 from geofit.report.pictures import DOTS, TYPE, WIDTH, png
+from geofit.report.plots import colour_scale
 from geofit.report.pores_chapter import PoresFindings, pores_picture
 from geofit.report.scene import mesh_scene, network_scene
 from geofit.report.style import CORE, LINE, MUTED, WARNING, drawing, quiet_axes
@@ -23,6 +24,8 @@ __all__ = ["draw_pores"]
 
 #: Bars of a histogram.
 BARS = 30
+#: Room for the scale of colours below a picture, inches.
+SCALE = 0.5
 COLOUR = "#5c8fb0"
 
 
@@ -40,7 +43,7 @@ def draw_pores(found: PoresFindings, mesh: TriangleMesh, t: Language = EN) -> di
             drawn["sizes"] = png(_sizes(found, t))
         # Without OpenGL the report has its other pictures.
         with suppress(MissingDependencyError):
-            drawn |= _in_space(found, mesh)
+            drawn |= _in_space(found, mesh, t)
     return {pores_picture(what, found.name): data for what, data in drawn.items()}
 
 
@@ -116,7 +119,7 @@ def _sizes(found: PoresFindings, t: Language) -> Figure:
     return figure
 
 
-def _in_space(found: PoresFindings, mesh: TriangleMesh) -> dict[str, bytes]:
+def _in_space(found: PoresFindings, mesh: TriangleMesh, t: Language) -> dict[str, bytes]:
     from matplotlib.figure import Figure
 
     # In millimetres: a picture is drawn with seven digits.
@@ -132,9 +135,13 @@ def _in_space(found: PoresFindings, mesh: TriangleMesh) -> dict[str, bytes]:
     drawn = {}
     for what, scene in scenes.items():
         tall = min(WIDTH * scene.image.shape[0] / scene.image.shape[1], 3.3)
-        figure = Figure(figsize=(WIDTH, tall), dpi=DOTS)
-        axes = figure.add_axes((0, 0, 1, 1))
+        below = SCALE if what == "network" else 0.0
+        figure = Figure(figsize=(WIDTH, tall + below), dpi=DOTS)
+        axes = figure.add_axes((0, below / (tall + below), 1, tall / (tall + below)))
         axes.imshow(scene.image, interpolation="antialiased")
         axes.set_axis_off()
+        if below:
+            low, high = scene.limits
+            colour_scale(axes, (low * 1e3, high * 1e3), t("Radius, µm"))
         drawn[what] = png(figure)
     return drawn

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from string import ascii_uppercase
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,7 +90,10 @@ def _profiles(fit: HorizonFit, found: PredictionResult | None, section: Section,
 
 
 def _crosswise(site: Site, points: Sequence[PointSet]) -> tuple[Section, ...]:
-    """Return two lines through the middle of the points, along and across their longer axis."""
+    """Return two lines through the middle of the points, along and across their longer axis.
+
+    Their letters are not the names of horizons.
+    """
     xy = np.concatenate([one.xyz[:, :2] for one in points])
     if len(xy) < 3:
         return ()
@@ -98,7 +102,8 @@ def _crosswise(site: Site, points: Sequence[PointSet]) -> tuple[Section, ...]:
     _, _, axes = np.linalg.svd(xy - xy.mean(axis=0), full_matrices=False)
     sections = []
     extent = float(np.hypot(*np.ptp(ends, axis=0)))
-    for name, way in zip("AB", axes, strict=True):
+    letters = (letter for letter in ascii_uppercase if letter not in site.horizons)
+    for name, way in zip(letters, axes, strict=False):
         way = way if way[0] > 0 or (way[0] == 0 and way[1] > 0) else -way
         reach = (ends - middle) @ way
         if np.ptp(reach) > NARROWEST * extent:

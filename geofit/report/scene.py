@@ -199,7 +199,7 @@ def network_scene(
         lines = np.column_stack([np.full(len(links), 2), links])
         plotter.add_mesh(pyvista.PolyData(place(centre), lines=lines.ravel()), color="#3a4652", line_width=5)
     plotter.add_mesh(pyvista.Box(np.column_stack([-size / 2, size / 2]).ravel()), style="wireframe", color="#9aa7b4")
-    return _image(plotter, place, 1, (float(radius.min()), float(radius.max())))
+    return _image(plotter, place, 1, (float(radius.min()), float(radius.max())), boxed=True)
 
 
 def elevation_colours() -> Any:

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fpdf import FPDF
 from results import examined, horizon
 
 from geofit.data.languages import EN, ZH
@@ -31,8 +32,10 @@ from geofit.report.html import write_html
 from geofit.report.length_axis import upright
 from geofit.report.pdf import write_pdf
 from geofit.report.pdf_table import FEWEST, LaidTable, page_ends
+from geofit.report.pdf_text import Pen, Typesetter
 from geofit.report.pictures import draw_pictures, draw_sections, draw_site
 from geofit.report.profile import along_polyline, profiles, report_sections
+from geofit.report.scene import network_scene
 from geofit.report.section_sheet import draw_section, section_sheet
 
 pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
@@ -166,6 +169,9 @@ def test_a_site_without_sections_is_cut_along_and_across():
     ways = [one.line[1] - one.line[0] for one in (first, second)]
     assert abs(ways[0] @ ways[1]) < 1e-6 * np.hypot(*ways[0]) * np.hypot(*ways[1])
     assert np.hypot(*ways[0]) > np.hypot(*ways[1])
+    assert (first.name, second.name) == ("A", "B")
+    named = replace(site, horizons={"A": result.surface.points})
+    assert [one.name for one in report_sections(named, [result.surface.points])] == ["B", "C"]
 
 
 @pytest.mark.parametrize(("length", "room"), [(1500.0, 150.0), (87.3, 150.0), (12_345.0, 146.0), (0.4, 100.0)])
@@ -264,6 +270,39 @@ def test_the_legend_of_a_section_names_the_kinds_of_holes_that_are_drawn():
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert "borehole" in words
     assert "adit" not in words
+
+
+class _Font(FPDF):
+    """Pages with the fonts of a Chinese report."""
+
+    def __init__(self):
+        super().__init__()
+        found = fonts.pdf_fonts(chinese=True)
+        for family, style, font in (("text", "", found.regular), ("signs", "", found.signs)):
+            self.add_font(family, style, font.path, collection_font_number=font.index)
+
+
+@pytest.mark.skipif(NO_FONT, reason="no font with Chinese characters")
+def test_chinese_lines_hold_units_to_numbers_and_end_with_two_characters():
+    type_, pen = Typesetter(_Font()), Pen(8.0)
+    text = "留出误差 2.061 m = 4.1 ε（留一分块法）；90 % 预测带含 90 %（留一钻孔），最大高差，m"
+    for room in np.arange(20.0, 80.0, 0.7):
+        lines = type_.lines(text, room, pen)
+        assert "".join(lines).replace(" ", "") == text.replace(" ", "")
+        assert all(type_.width(line, pen) <= room for line in lines)
+        assert not [line for line in lines if re.match(r"[%mε]", line)]
+    for room in np.arange(12.0, 30.0, 0.7):
+        last = type_.lines("二十五项检查中二十五项合格", room, pen)[-1]
+        assert len(last) > 1
+
+
+def test_a_network_is_drawn_whole_with_the_box_of_its_sample():
+    size = np.array([1.0, 1.0, 1.0])
+    scene = network_scene(np.array([[0.5, 0.5, 0.2], [0.5, 0.5, 0.8]]), np.array([0.3, 0.1]), np.array([[0, 1]]), size)
+    corners = np.array([[x, y, z, 1.0] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+    flat = corners @ scene.to_pixels.T
+    assert (flat > -1).all()
+    assert (flat < np.array(scene.image.shape[1::-1]) + 1).all()
 
 
 @pytest.mark.parametrize("places", [(0.0, 100.0), (3.0, 50.0, 97.0)])
