@@ -101,8 +101,9 @@ class Desktop(QObject):
         """Speak another language: the window is closed and made anew, the session goes on."""
         if code == self.preferences.language:
             return
-        if self.window.activity.busy:
+        if self.window.busy:
             self.window.tell(self.tr("Wait for the task to end, then choose the language."))
+            self.window.check_language()
             return
         self.preferences.language = code
         apply_language(code)
@@ -112,7 +113,7 @@ class Desktop(QObject):
         """Show lengths in another unit: every number of the window changes, so it is made anew."""
         if unit == self.preferences.lengths:
             return
-        if self.window.activity.busy:
+        if self.window.busy:
             self.window.tell(self.tr("Wait for the task to end, then choose the unit."))
             return
         self.preferences.lengths = cast("LengthUnit", unit)

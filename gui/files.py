@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -64,7 +65,6 @@ class Files(QObject):
         self._session, self._activity, self._fitting = session, activity, fitting
         self._preferences, self._window = preferences, window
         self._document = session.document
-        self._after_saving: Callable[[], object] | None = None
 
     def ask_open(self) -> None:
         """Ask for a project, a site file or a survey, and open it."""
@@ -120,15 +120,15 @@ class Files(QObject):
         """Close the site, after asking whether to save."""
         self.leave(self._close)
 
-    def save(self) -> None:
-        """Save the project; ask where if it was never saved."""
+    def save(self, then: Callable[[], object] | None = None) -> None:
+        """Save the project; ask where if it was never saved. Do what ends it ``then``, if all is saved."""
         if self._document.project_file is None:
-            self.save_as()
+            self.save_as(then)
         else:
-            self.save_to(self._document.project_file)
+            self.save_to(self._document.project_file, then)
 
-    def save_as(self) -> None:
-        """Ask for a file, and save the project there."""
+    def save_as(self, then: Callable[[], object] | None = None) -> None:
+        """Ask for a file, and save the project there; ``then`` as in :meth:`save`."""
         site_file = self._document.site_file
         if site_file is None:
             return
@@ -138,12 +138,10 @@ class Files(QObject):
         )
         if name:
             path = Path(name)
-            self.save_to(path if path.suffix == PROJECT else path.with_name(path.name + PROJECT))
-        else:
-            self._after_saving = None
+            self.save_to(path if path.suffix == PROJECT else path.with_name(path.name + PROJECT), then)
 
-    def save_to(self, path: Path) -> None:
-        """Save the project into a file."""
+    def save_to(self, path: Path, then: Callable[[], object] | None = None) -> None:
+        """Save the project into a file; ``then`` as in :meth:`save`."""
         document = self._document
         if document.site_file is None:
             return
@@ -160,7 +158,7 @@ class Files(QObject):
         data = {name: earlier for name in earlier_data(state) if (earlier := document.data(name)) is not None}
         bodies = {name: saved_body(result) for name, result in document.made_bodies().items()}
         work = (state, site, document.site_file, path, surfaces, same, data, bodies)
-        self._activity.do(title, save_state, *work, on_done=self._saved, in_process=bool(surfaces))
+        self._activity.do(title, save_state, *work, on_done=partial(self._saved, then), in_process=bool(surfaces))
 
     def leave(self, then: Callable[[], object]) -> None:
         """Do what ends the document, after asking whether to save; not at all if the user wants to stay."""
@@ -178,8 +176,7 @@ class Files(QObject):
         box.setDefaultButton(QMessageBox.StandardButton.Save)
         answer = box.exec()
         if answer == QMessageBox.StandardButton.Save:
-            self._after_saving = then
-            self.save()
+            self.save(then)
         elif answer == QMessageBox.StandardButton.Discard:
             then()
 
@@ -216,11 +213,14 @@ class Files(QObject):
                 self.built.emit(one.name, one.rule, one.order)
 
         self._preferences.folder = str(path.parent)
+        # What runs is for the site that is left.
+        self._activity.cancel()
         title = self.tr("Open {name}").format(name=path.name)
         read = read_project if path.suffix == PROJECT else _read_site
         self._activity.do(title, read, path, on_done=opened)
 
     def _open_sample(self, place: Path) -> None:
+        self._activity.cancel()
         title = self.tr("Open sample site")
         self._activity.do(title, _read_sample, place, on_done=lambda found: self._opened(*found))
 
@@ -308,15 +308,15 @@ class Files(QObject):
         self._fitting.complete(tuple(surfaces))
         self._fitting.make_missing()
 
-    def _saved(self, written: Written) -> None:
+    def _saved(self, then: Callable[[], object] | None, written: Written) -> None:
         self._session.saved(written.path, written.state)
         self._preferences.opened(written.path)
         self._preferences.folder = str(written.path.resolve().parent)
         self.reported.emit(self.tr("Saved {name}.").format(name=written.path.resolve()))
         _LOG.info(message("gui.log-saved", "Saved {path}", path=str(written.path)))
-        then, self._after_saving = self._after_saving, None
-        if then is not None and not self._document.dirty:
-            then()
+        if then is not None:
+            # What was fitted meanwhile is not in the file: that is asked again.
+            self.leave(then)
 
 
 def _read_site(path: Path, *, progress: Progress) -> Site:

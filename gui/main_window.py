@@ -103,7 +103,7 @@ class MainWindow(QMainWindow):
         self.menus.show_panels(self.panels.reach.switches)
         self._show_recent()
         self._choose_in(self.actions_.themes, preferences.theme)
-        self._choose_in(self.actions_.languages, preferences.language)
+        self.check_language()
         self._set_mouse(preferences.mouse)
         self._set_sizes(preferences.text_size, preferences.point_size)
         self._restore_layout()
@@ -119,6 +119,15 @@ class MainWindow(QMainWindow):
     def tell(self, text: str) -> None:
         """Say something in the status bar for a while."""
         self.statusBar().showMessage(in_lengths(text), 8000)
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is computed here or in the dialog of a survey, which would go with the window."""
+        return self.activity.busy or (self.surveys.dialog is not None and self.surveys.dialog.running)
+
+    def check_language(self) -> None:
+        """Mark the language of the window in its menu."""
+        self._choose_in(self.actions_.languages, self.preferences.language)
 
     def leave_without_asking(self) -> None:
         """Close at the next chance: the session goes on, or the user has been asked."""

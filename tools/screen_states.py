@@ -196,7 +196,9 @@ class _Set:
         self.shoot("13_off_the_data", self.window)
 
     def export(self) -> None:
-        dialog = ExportDialog(self.window.session.document.surfaces(), self.window)
+        surfaces = self.window.session.document.surfaces()
+        verdicts = {name: found for name in surfaces if (found := self.window.showing.verdict(name)) is not None}
+        dialog = ExportDialog(surfaces, self.window, verdicts)
         for row in range(2, dialog.horizons.count()):
             dialog.horizons.item(row).setCheckState(Qt.CheckState.Unchecked)
         dialog.show()

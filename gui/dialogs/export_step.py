@@ -233,10 +233,12 @@ class ExportDialog(TaskDialog):
                 TableColumn(
                     self.tr("Found"),
                     texts([digits.measured(check.value, translated(check.unit)) for _, check in rows]),
+                    measured=True,
                 ),
                 TableColumn(
                     self.tr("Limit"),
                     texts([digits.measured(check.limit, translated(check.unit)) for _, check in rows]),
+                    measured=True,
                 ),
                 TableColumn(self.tr("In words"), texts([translated(check.text) for _, check in rows])),
             )

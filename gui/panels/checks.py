@@ -61,6 +61,8 @@ class ChecksPanel(QWidget):
         self.tree.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.tree.setHorizontalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
         header = self.tree.header()
+        for column in (2, 3):
+            self.tree.headerItem().setTextAlignment(column, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         header.setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
         header.setStretchLastSection(True)
         header.sectionResized.connect(lambda *_: self.tree.scheduleDelayedItemsLayout())
@@ -234,7 +236,9 @@ class ChecksPanel(QWidget):
             row.setFirstColumnSpanned(not row.text(1))
         for column in range(4):
             self.tree.resizeColumnToContents(column)
-            self.tree.setColumnWidth(column, min(self.tree.columnWidth(column), max(self.tree.width() - 110, 130)))
+            # A long name leaves room for what is said.
+            most = 2 * self.tree.width() // 5 if column == 0 else self.tree.width() - 110
+            self.tree.setColumnWidth(column, min(self.tree.columnWidth(column), max(most, 130)))
 
     def _tell(self, current: QTreeWidgetItem | None) -> None:
         index = None if current is None else current.data(0, _POINT)

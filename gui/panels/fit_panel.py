@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QPushBut
 
 from geofit.data.setting_texts import SETTINGS
 from geofit.data.settings import FitSettings
+from geofit.gui.names import breakable
 from geofit.gui.panels.fit_fields import AutoField, ChoiceField, CoreField, NumberField
 from geofit.gui.panels.marks import icon
 from geofit.gui.panels.placeholder import Placeholder
@@ -95,7 +96,7 @@ class FitPanel(QWidget):
         if not name:
             self.pages.say(self.tr("No horizon chosen: choose one in the project tree to see how it is fitted."))
             return
-        self.title.setText(self.tr("Fit of {name}").format(name=name))
+        self.title.setText(breakable(self.tr("Fit of {name}").format(name=name)))
         self._reset()
         self.pages.reveal()
 

@@ -115,4 +115,9 @@ def _explain(axes: Axes, colours: PlotColours, limits: tuple[float, float], inne
         borderaxespad=0.2,
         labelcolor=colours.text,
         labelspacing=0.3,
+        # No line of the grid runs through the words.
+        frameon=True,
+        framealpha=1.0,
+        facecolor=colours.paper,
+        edgecolor="none",
     )

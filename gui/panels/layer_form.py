@@ -19,7 +19,7 @@ class LayerForm(QGroupBox):
 
     def __init__(self, layers: Layers) -> None:
         super().__init__()
-        self._layers, self._key = layers, ""
+        self._layers, self._key, self._name = layers, "", ""
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         self.opacity = QSlider(Qt.Orientation.Horizontal)
         self.opacity.setRange(5, 100)
@@ -57,7 +57,8 @@ class LayerForm(QGroupBox):
             return
         blockers = [QSignalBlocker(w) for w in (self.opacity, self.colour_by, self.isolines, self.labels)]
         self._key = layer.key
-        self.setTitle(layer_title(layer.kind, layer.horizon))
+        self._name = layer_title(layer.kind, layer.horizon)
+        self._entitle()
         self.opacity.setValue(round(100 * layer.opacity))
         self.opacity.setToolTip(self.tr("{percent} %").format(percent=round(100 * layer.opacity)))
         if [self.colour_by.itemData(k) for k in range(self.colour_by.count())] != list(layer.choices):
@@ -82,7 +83,21 @@ class LayerForm(QGroupBox):
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
         """Take the height that rows have which are wrapped at this width."""
         super().resizeEvent(event)
+        self._entitle()
         self._stand()
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        """Leave the title out: a long name would push the scene aside."""
+        return QSize(self._form.totalMinimumSize().width(), super().minimumSizeHint().height())
+
+    def sizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        """Leave the title out, as above."""
+        return QSize(self._form.totalSizeHint().width(), super().sizeHint().height())
+
+    def _entitle(self) -> None:
+        room = max(self.width() - 16, 40)
+        self.setTitle(self.fontMetrics().elidedText(self._name, Qt.TextElideMode.ElideMiddle, room))
+        self.setToolTip("" if self.title() == self._name else self._name)
 
     def _stand(self) -> None:
         self.setMinimumHeight(max(self.heightForWidth(self.width()), 0))

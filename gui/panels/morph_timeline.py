@@ -19,7 +19,7 @@ __all__ = ["MorphTimeline"]
 Floats = NDArray[np.float64]
 
 #: Room for numbers at both sides, for the slider above and the words below, logical pixels.
-LEFT, RIGHT, ABOVE, BELOW = 74.0, 46.0, 26.0, 20.0
+LEFT, RIGHT, ABOVE, BELOW = 74.0, 96.0, 26.0, 20.0
 #: Keys move the slider by these shares.
 STEP, PAGE = 0.01, 0.1
 
@@ -92,6 +92,10 @@ class MorphTimeline(QWidget):
             painter.drawPolygon(QPolygonF([QPointF(x - 4, 1), QPointF(x + 4, 1), QPointF(x, 8)]))
         self._curve(painter, self._volume, blue, "{:,.0f} m³", left=True, stepped=False)
         self._curve(painter, self._euler, red, "{:g}", left=False, stepped=True)
+        if len(self._euler):
+            painter.drawText(
+                QRectF(plot.right() + 6, 0.0, RIGHT - 6, ABOVE), Qt.AlignmentFlag.AlignVCenter, self.tr("Euler number")
+            )
         x = self._x(self.tau)
         painter.setPen(QPen(text, 1.2))
         painter.drawLine(QPointF(x, rail), QPointF(x, plot.bottom()))

@@ -155,9 +155,10 @@ def _write(painter: QPainter, text: str, at: QPointF, paper: QColor) -> None:
     painter.fillPath(path, painter.pen().color())
 
 
-def draw_title(painter: QPainter, name: str, colour: QColor, paper: QColor) -> None:
-    """Write what is shown into the upper left corner, after a square in its colour."""
+def draw_title(painter: QPainter, within: QRect, name: str, colour: QColor, paper: QColor) -> None:
+    """Write what is shown into the upper left corner, after a square in its colour, as far as the north arrow."""
     metrics = painter.fontMetrics()
+    name = metrics.elidedText(name, Qt.TextElideMode.ElideMiddle, max(within.width() - 65, 20))
     painter.fillRect(QRectF(10, 8, 10, 10), colour)
     _write(painter, name, QPointF(25, 13 + metrics.capHeight() / 2), paper)
 

@@ -210,7 +210,7 @@ class PlanView(QWidget):
         painter.setFont(small)
         draw_labels(painter, labels, self.to_widget(few), self.rect(), paper, self.data.name)
         painter.setFont(self.font())
-        draw_title(painter, self.data.name, QColor(self.data.colour), paper)
+        draw_title(painter, self.rect(), self.data.name, QColor(self.data.colour), paper)
         painter.setPen(QPen(quiet, 1))
         draw_scale_bar(painter, self.rect(), self._scale)
         draw_north(painter, self.rect())

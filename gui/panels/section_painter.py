@@ -9,11 +9,13 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation, Text
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from geofit.data.site import Site
+from geofit.gui.names import shortened
 from geofit.gui.panels.canvas import DOT, PlotColours
 from geofit.gui.panels.curtain import Curtain, Traces
 from geofit.gui.panels.section_scale import SectionExtent
@@ -154,10 +156,11 @@ def _holes(axes: Axes, data: SectionData, colours: PlotColours) -> None:
     _logged(axes, data, colours)
     axes.plot(*np.concatenate(tracks).T, color=colours.muted, lw=1.1, zorder=3)
     axes.plot(*np.array([head for _, head in heads]).T, ls="none", marker="_", color=colours.muted, ms=6, zorder=3)
+    halo = withStroke(linewidth=2.5, foreground=colours.paper)
     for name, head in heads:
         axes.annotate(
             name, head, xytext=(0, 3), textcoords="offset points", ha="center", va="bottom", rotation=90,
-            size=LETTERS, color=colours.text, annotation_clip=True, zorder=6,
+            size=LETTERS, color=colours.text, annotation_clip=True, zorder=6, path_effects=[halo],
         )  # fmt: skip
 
 
@@ -231,7 +234,8 @@ def explain(figure: Figure, colours: PlotColours, *, narrow: bool) -> tuple[Text
     for old in (*figure.legends, *figure.texts):
         old.remove()
     width, height = (100 * float(inches) for inches in figure.get_size_inches())
-    handles, labels = figure.axes[0].get_legend_handles_labels()
+    handles, names = figure.axes[0].get_legend_handles_labels()
+    labels = [shortened(name) for name in names]
     column = row = 0.0
     if handles:
         legend = figure.legend(

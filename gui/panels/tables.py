@@ -69,7 +69,7 @@ class TableColumn:
     """A column: its title, its values (n,), and with how many digits numbers are written (nan stays empty).
 
     ``icons`` returns the mark before a cell; ``order`` is what the column sorts by, where that is not the values.
-    ``coordinate``: they are eastings or northings.
+    ``coordinate``: they are eastings or northings. ``measured``: texts that are numbers with their units.
     """
 
     title: str
@@ -79,6 +79,7 @@ class TableColumn:
     icons: Callable[[int], QIcon | None] | None = None
     order: ArrayLike | None = None
     coordinate: bool = False
+    measured: bool = False
 
     def text(self, row: int) -> str:
         """Return the cell as it is shown."""
@@ -100,6 +101,11 @@ class TableColumn:
     def number(self) -> bool:
         """Whether the cells are numbers."""
         return self.values.dtype.kind in "fiu"
+
+    @property
+    def side(self) -> Qt.AlignmentFlag:
+        """At which side the cells stand."""
+        return _RIGHT if self.number or self.measured else _LEFT
 
     @cached_property
     def rank(self) -> NDArray[Any]:
@@ -170,7 +176,7 @@ class ArrayModel(QAbstractTableModel):
         if role == Qt.ItemDataRole.DisplayRole:
             return column.text(self._order[index.row()])
         if role == Qt.ItemDataRole.TextAlignmentRole:
-            return _RIGHT if column.number else _LEFT
+            return column.side
         if role == Qt.ItemDataRole.DecorationRole and column.icons is not None:
             return column.icons(int(self._order[index.row()]))
         if role == Qt.ItemDataRole.ToolTipRole and not column.number:
@@ -193,7 +199,7 @@ class ArrayModel(QAbstractTableModel):
         if role == Qt.ItemDataRole.ToolTipRole:
             return self.columns[section].tooltip or None
         if role == Qt.ItemDataRole.TextAlignmentRole:
-            return _RIGHT if self.columns[section].number else _LEFT
+            return self.columns[section].side
         return None
 
     def sort(self, column: int, order: Qt.SortOrder = Qt.SortOrder.AscendingOrder) -> None:

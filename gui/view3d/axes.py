@@ -18,8 +18,11 @@ Floats = NDArray[np.float64]
 
 #: Most coordinate lines a direction.
 MOST = 40
-#: An edge drawn shorter than this has no numbers, and numbers stand so far apart at least, logical pixels.
-SHORT, APART = 90.0, 62.0
+#: An edge drawn shorter than this has no numbers, and numbers stand so far apart at least, beside each other and one
+#: above the other, logical pixels.
+SHORT, APART, CLOSE = 90.0, 62.0, 22.0
+#: So many coarser steps are tried.
+COARSER = 5
 
 
 @dataclass(frozen=True)
@@ -104,20 +107,25 @@ def _along(
 ) -> list[Mark]:
     if axis == 2:
         step = nice((box[1, 2] - box[0, 2]) / 3)
-    values = ticks(box[0, axis], box[1, axis], step, length_unit() if axis == 2 else coordinate_unit())
-    places = np.tile(base, (len(values), 1))
-    places[:, axis] = values
-    seen = view.screen(places)[:, :2] if len(values) else np.empty((0, 2))
+    gap, unit = (APART, coordinate_unit()) if axis < 2 else (CLOSE, length_unit())
+    for _ in range(COARSER):
+        values = ticks(box[0, axis], box[1, axis], step, unit)
+        places = np.tile(base, (len(values), 1))
+        places[:, axis] = values
+        seen = view.screen(places)[:, :2] if len(values) else np.empty((0, 2))
+        # All at even steps: of numbers too close to each other some alone would be left out.
+        if len(values) < 3 or np.linalg.norm(np.diff(seen, axis=0), axis=1).min() >= gap:
+            break
+        step *= 2.5 if f"{step:e}"[0] == "2" else 2
     way = seen[-1] - seen[0] if len(values) > 1 else np.array([1.0, 0.0])
     out = np.array([-way[1], way[0]]) / max(float(np.linalg.norm(way)), 1e-9)
     if len(values) and out @ (seen.mean(axis=0) - middle) < 0:
         out = -out
     kept: list[Mark] = []
-    gap = APART if axis < 2 else 22.0
     for value, (x, y) in zip(values.tolist(), seen.tolist(), strict=True):
         inside = 0 <= x <= view.width and 0 <= y <= view.height
         if inside and (not kept or math.hypot(x - kept[-1].x, y - kept[-1].y) >= gap):
             number = grouped(round(shown_length(value) if axis == 2 else shown_coordinate(value), 6))
-            unit = f" {length_mark()}" if axis == 2 else ""
-            kept.append(Mark(x, y, (float(out[0]), float(out[1])), f"{letter}{number}{unit}"))
+            behind = f" {length_mark()}" if axis == 2 else ""
+            kept.append(Mark(x, y, (float(out[0]), float(out[1])), f"{letter}{number}{behind}"))
     return kept

@@ -15,6 +15,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPen, QPolygonF
 
 from geofit.gui.lengths import length_mark, metres_shown, shown_length
+from geofit.gui.names import shortened
 from geofit.gui.view3d.axes import Mark, grouped, nice
 from geofit.gui.view3d.layer_names import word
 from geofit.gui.view3d.layers import Legend
@@ -115,7 +116,9 @@ def _marks(painter: QPainter, marks: Sequence[Mark], kept: Sequence[QRectF], the
         y = tip.y() + 3 * mark.out[1] - high * (1 - mark.out[1]) / 2
         box = QRectF(x, y, wide + 1, high)
         if not any(box.intersects(other) for other in kept):
-            painter.drawLine(QPointF(mark.x, mark.y), tip)
+            # At the view's edge the text has moved to where the tick is.
+            if not box.contains(tip):
+                painter.drawLine(QPointF(mark.x, mark.y), tip)
             painter.drawText(box, Qt.AlignmentFlag.AlignCenter, mark.text)
 
 
@@ -284,7 +287,7 @@ def draw_legend(painter: QPainter, box: QRectF, title: str, legend: Legend, them
 def legend_title(horizon: str, legend: Legend) -> str:
     """Return the title of a legend: the horizon, the quantity and its unit."""
     title = word(legend.title) + (f", {legend.unit}" if legend.unit else "")
-    return f"{horizon} · {title}" if horizon else title
+    return f"{shortened(horizon)} · {title}" if horizon else title
 
 
 def merged(legends: Sequence[tuple[str, Legend]]) -> list[tuple[str, Legend]]:

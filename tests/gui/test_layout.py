@@ -125,3 +125,21 @@ def test_panels_can_be_reset(app):
     app.trigger("reset_layout")
     app.idle()
     assert shown(app.window) == {"tool bar", "panel bar", *app.window.panels.docks} - set(BOTTOM)
+
+
+def test_long_names_push_no_dock_over_the_scene(app, tmp_path):
+    names = ("base_of_the_weathered_granodiorite_of_the_left_abutment_below_1600_campaign_1987", "a long name " * 12)
+    rows = [f"{x},{y},{x % 7 - 9 * k},{name}" for k, name in enumerate(names) for x in range(9) for y in range(9)]
+    (tmp_path / "p.csv").write_text("\n".join(["x,y,z,horizon", *rows]), encoding="utf-8")
+    (tmp_path / "site.toml").write_text('[site]\nname = "S"\n[[picks]]\nfile = "p.csv"\n', encoding="utf-8")
+    app.window.files.open(tmp_path / "site.toml")
+    app.idle()
+    app.window.fitting.fit_all()
+    app.idle()
+    for name in app.document.horizons:
+        app.document.select(name)
+        app.idle()
+        assert app.window.panels.tree.form.isVisible()
+        wide = {one: dock.minimumSizeHint().width() for one, dock in app.window.panels.docks.items()}
+        assert max(wide["tree"], wide["fit"]) < 300, wide
+        assert app.window.panels.centre.width() > app.window.width() / 3

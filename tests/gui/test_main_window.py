@@ -301,3 +301,25 @@ def test_the_whole_application_killed_comes_back(small):
 
 def _digest(state: State) -> str:
     return hashlib.sha256(json.dumps(state.to_data(), sort_keys=True).encode()).hexdigest()[:16]
+
+
+def test_another_language_waits_for_a_survey_and_the_menu_says_which_there_is(app, tmp_path):
+    def chosen():
+        return [action.data() for action in app.window.actions_.languages.actions() if action.isChecked()]
+
+    def choose(code):
+        next(one for one in app.window.actions_.languages.actions() if one.data() == code).trigger()
+        app.qtbot.wait(50)
+
+    (tmp_path / "tube.csv").write_text("x,y,z,radius\n0,0,100,2\n20,0,100,2\n", encoding="utf-8")
+    app.window.surveys.open(tmp_path / "tube.csv")
+    dialog = app.window.surveys.dialog
+    assert dialog.running
+    choose("zh_CN")
+    assert app.window.surveys.dialog is dialog
+    assert app.desktop.preferences.language == "en"
+    assert chosen() == ["en"]
+    app.qtbot.waitUntil(lambda: not dialog.running, timeout=60_000)
+    choose("zh_CN")
+    assert chosen() == ["zh_CN"]
+    choose("en")

@@ -212,6 +212,15 @@ def test_axes_tell_true_coordinates_at_their_places():
         assert min(np.hypot(*(place - (mark.x, mark.y))) for place in drawn) < 1e-6
 
 
+@pytest.mark.parametrize("distance", [800.0, 1400.0, 2000.0, 2600.0, 3200.0, 4000.0])
+def test_heights_beside_an_axis_stand_at_even_steps(distance):
+    box = np.array([ORIGIN - (500, 400, 300), at(500, 400, 300)])
+    view = _projector(Viewpoint(np.zeros(3), 212.0, 32.0, distance))
+    heights = [mark.text[:-2] for mark in marks(box, 200.0, view) if mark.text.endswith(" m")]
+    steps = np.diff([float(text.replace("\u2009", "").replace("−", "-")) for text in heights])
+    assert len(set(np.round(steps, 6).tolist())) <= 1, heights
+
+
 def test_numbers_are_grouped_and_ticks_few():
     assert grouped(3_100_500) == "3\u2009100\u2009500"
     assert grouped(-0.25) == "−0.25"
