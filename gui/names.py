@@ -1,26 +1,14 @@
-"""Long names where there is little room: cut in the middle, or broken where a word is too long for a panel."""
+"""Long names in a panel that is narrower than they are."""
 
 from __future__ import annotations
 
 import re
 
-__all__ = ["breakable", "shortened"]
+__all__ = ["breakable"]
 
 #: A longer word may be broken, at one of these signs or after so many letters.
 LONGEST, SIGNS = 24, r"[_\-./\\:]"
 _GAP = "\N{ZERO WIDTH SPACE}"
-
-
-def shortened(name: str, most: int = 28) -> str:
-    """Return a name with no more letters than that: its beginning and its end.
-
-    Examples
-    --------
-    >>> shortened("T2-T1"), shortened("base_of_the_weathered_granodiorite_1987", 15)
-    ('T2-T1', 'base_of…te_1987')
-    """
-    half = (most - 1) // 2
-    return name if len(name) <= most else f"{name[: most - 1 - half]}…{name[-half:]}"
 
 
 def breakable(text: str) -> str:

@@ -37,6 +37,8 @@ __all__ = ["write_pdf"]
 SIDE, TOP, BOTTOM = 18.0, 24.0, 20.0
 BODY, QUIET, SMALL, TINY = 8.6, 7.6, 7.0, 6.4
 LEADING = 1.45
+#: Type is made no smaller than this so that a text fits, points.
+LEAST = 6.0
 #: Letters of headings by their level, and room above them, mm.
 HEADS = {2: Pen(11.5, TEXT, bold=True), 3: Pen(9, TEXT, bold=True)}
 ABOVE_HEADING = {2: 3.5, 3: 2.0}
@@ -304,14 +306,18 @@ class _Pages(FPDF):
             self.set_draw_color(*rgb(TEXT))
             self.set_line_width(0.35)
             self.line(left, top, left + wide, top)
-            pen = Pen(10.5, TEXT, bold=True)
-            while self.type.width(value, pen) > wide and pen.size > 6:
-                pen = Pen(pen.size - 0.5, TEXT, bold=True)
+            pen = self._fitting(value, Pen(10.5, TEXT, bold=True), wide)
             self.type.draw(left, top + 1.2 + 3 * high + 2.75, value, pen)
             for lines, start in ((above[i], 1.2), (below[i], 6.7 + 3 * high)):
                 for k, line in enumerate(lines):
                     self.type.draw(left, top + start + 3 * (k + 0.5), line, small)
         self.set_xy(SIDE, top + height + 2.5)
+
+    def _fitting(self, text: str, pen: Pen, room: float) -> Pen:
+        """Return a pen no larger than the given one with which a text fits into a room (mm), if any is legible."""
+        while self.type.width(text, pen) > room and pen.size > LEAST:
+            pen = Pen(pen.size - 0.5, pen.colour, bold=pen.bold, family=pen.family)
+        return pen
 
     def _fields(self, block: Fields) -> None:
         """Draw the title block: two fields a row, label above value."""
@@ -326,7 +332,8 @@ class _Pages(FPDF):
             if i % 2 == 0 and i + 1 == len(block.items):
                 self.rect(x + wide, self.y, wide, height)
             self.type.draw(x + 1.5, self.y + 2.2, label, Pen(TINY, MUTED))
-            self.type.draw(x + 1.5, self.y + 5.9, self.type.cut(text, wide - 3, value), value)
+            pen = self._fitting(text, value, wide - 3)
+            self.type.draw(x + 1.5, self.y + 5.9, self.type.cut(text, wide - 3, pen), pen)
             if i % 2 == 1 or i + 1 == len(block.items):
                 self.set_y(self.y + height)
         self.set_y(self.y + 2.5)
@@ -368,8 +375,9 @@ class _Pages(FPDF):
         for role, name in block.roles:
             for k, x in enumerate(places):
                 self.rect(x, self.y, first if k == 0 else wide, height)
-                words = (role, name)[k] if k < 2 else ""
-                self.type.draw(x + 1.5, self.y + height / 2, words, Pen(BODY))
+                words, room = ((role, first), (name, wide))[k] if k < 2 else ("", wide)
+                pen = self._fitting(words, Pen(BODY), room - 3)
+                self.type.draw(x + 1.5, self.y + height / 2, self.type.cut(words, room - 3, pen), pen)
             self.set_y(self.y + height)
 
     def _rule(self, y: float) -> None:

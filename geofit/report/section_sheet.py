@@ -15,7 +15,7 @@ from geofit.report.accuracy_report import SectionSheet
 from geofit.report.digits import tick
 from geofit.report.furniture import exaggeration_for, scale_bar, scale_for, scale_text
 from geofit.report.profile import THICKNESS, Profile, along_polyline
-from geofit.report.style import LINE, MUTED, PAPER, TEXT, drawing, horizon_colours, kind_style
+from geofit.report.style import LINE, MUTED, PAPER, TEXT, columns, drawing, horizon_colours, kind_style, shortened
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -232,7 +232,9 @@ def _legend(
 ) -> None:  # fmt: skip
     from matplotlib.lines import Line2D
 
-    handles = [Line2D([], [], color=colours[name], lw=1.8, label=name) for name, lines in cut.items() if lines]
+    handles = [
+        Line2D([], [], color=colours[name], lw=1.8, label=shortened(name)) for name, lines in cut.items() if lines
+    ]
     if ground:
         handles.append(Line2D([], [], color=GROUND, lw=1.3, label=t("ground surface")))
     handles.append(Line2D([], [], color=MUTED, lw=0, marker="o", ms=3, mfc=PAPER, mec=MUTED,
@@ -240,7 +242,8 @@ def _legend(
     for hole_kind in sorted(kinds):
         handles.append(Line2D([], [], color=kind_style(hole_kind)[1], lw=0.9, label=translate(hole_kind, t)))
     height = figure.get_size_inches()[1] / MM
+    ncols = columns([str(one.get_label()) for one in handles], SHEET - LEFT, 6.5, 5)
     figure.legend(
-        handles=handles, loc="lower left", bbox_to_anchor=(LEFT / SHEET, 1.0 / height), ncols=5, fontsize=6.5,
+        handles=handles, loc="lower left", bbox_to_anchor=(LEFT / SHEET, 1.0 / height), ncols=ncols, fontsize=6.5,
         handlelength=1.8, columnspacing=1.4, borderaxespad=0, handletextpad=0.5,
     )  # fmt: skip

@@ -82,6 +82,30 @@ def horizon_colours(names: Iterable[str]) -> dict[str, str]:
     return {name: HORIZONS[k % len(HORIZONS)] for k, name in enumerate(dict.fromkeys(names))}
 
 
+def shortened(name: str, most: int = 28) -> str:
+    """Return a name with no more letters than that, for a legend: its beginning and its end.
+
+    Examples
+    --------
+    >>> shortened("T2-T1"), shortened("base_of_the_weathered_granodiorite_1987", 15)
+    ('T2-T1', 'base_of…te_1987')
+    """
+    half = (most - 1) // 2
+    return name if len(name) <= most else f"{name[: most - 1 - half]}…{name[-half:]}"
+
+
+def columns(labels: Iterable[str], room: float, size: float, most: int) -> int:
+    """Return how many columns of a legend fit into a room (mm) with type of a size (points), ``most`` at most.
+
+    Examples
+    --------
+    >>> columns(["T1", "T2"], 155.0, 6.5, 5), columns(["x" * 28], 155.0, 6.5, 5), columns(["风化" * 14], 155.0, 6.5, 5)
+    (5, 3, 1)
+    """
+    letters = max((sum(1 + (ord(c) > 0x2E80) for c in label) for label in labels), default=1)
+    return int(min(max(room / (0.55 * size * 0.3528 * letters + 9.0), 1), most))
+
+
 @dataclass(frozen=True)
 class Band:
     """A band of |d|: from ``low`` (included) to ``high`` metres; ``area`` of its marker in points squared."""

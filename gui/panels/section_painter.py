@@ -15,12 +15,11 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from geofit.data.site import Site
-from geofit.gui.names import shortened
 from geofit.gui.panels.canvas import DOT, PlotColours
 from geofit.gui.panels.curtain import Curtain, Traces
 from geofit.gui.panels.section_scale import SectionExtent
 from geofit.report.section_pages import lithology_style
-from geofit.report.style import horizon_colours, kind_style, quiet_axes
+from geofit.report.style import horizon_colours, kind_style, quiet_axes, shortened
 from geofit.site.hole_logs import hole_intervals, log_files
 from geofit.site.support import support_of
 

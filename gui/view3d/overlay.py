@@ -15,11 +15,11 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPen, QPolygonF
 
 from geofit.gui.lengths import length_mark, metres_shown, shown_length
-from geofit.gui.names import shortened
 from geofit.gui.view3d.axes import Mark, grouped, nice
 from geofit.gui.view3d.layer_names import word
 from geofit.gui.view3d.layers import Legend
 from geofit.gui.view3d.projector import Projector
+from geofit.report.style import shortened
 
 __all__ = ["Content", "Ring", "Theme", "draw_legend", "draw_overlay", "legend_size", "legend_title", "merged"]
 

@@ -103,6 +103,26 @@ def test_the_title_block_stands_on_the_cover_and_in_the_running_head(pages):
     assert all("GEO-012 · Rev. B" in text for text in texts[1:])
 
 
+def test_long_names_of_the_title_block_are_whole_and_stay_in_their_cells(report, images, tmp_path):
+    client, author = "Heishui River Hydropower Development and Investment Company", "Li Wen, Zhang San and Wang Wu"
+    long = replace(report, title=replace(TITLE, client=client, author=author))
+    write_pdf(document(long, EN), images, tmp_path / "r.pdf")
+    pdf = pdfium.PdfDocument(tmp_path / "r.pdf")
+    text = pdf[0].get_textpage()
+    for words, right in ((client, 192.0), (author, 192.0)):
+        assert words in re.sub(r"\s+", " ", text.get_text_range())
+        place = text.search(words).get_next()
+        boxes = [text.get_charbox(place[0] + k) for k in range(place[1])]
+        assert max(box[2] for box in boxes) < right / 25.4 * 72
+    # The second time as who prepared it: left of the line beside the signature.
+    found, last = text.search(author), None
+    while (place := found.get_next()) is not None:
+        last = place
+    first = 18 + 26 + (174 - 26) / 3
+    assert max(text.get_charbox(last[0] + k)[2] for k in range(last[1])) < first / 25.4 * 72
+    pdf.close()
+
+
 def test_the_signatures_stay_on_the_cover_however_many_revisions_there_are(report, images, tmp_path):
     revisions = tuple(Revision(chr(65 + k), f"2026-01-{k + 1:02d}", "Change", "Li Wen") for k in range(8))
     long = replace(report, title=replace(TITLE, revisions=revisions))
