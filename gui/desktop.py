@@ -71,7 +71,7 @@ class Desktop(QObject):
         Returns the exit code.
         """
         sys.excepthook = self._hear_mistake
-        threading.excepthook = lambda args: self._hear_mistake(args.exc_type, args.exc_value, args.exc_traceback)
+        threading.excepthook = self._hear_thread
         # Python handles Ctrl+C only while it runs; the garbage collector's timer wakes it twice a second.
         signal.signal(signal.SIGINT, lambda *_: self.window.close())
         # Modules loaded at start-up are never garbage; traversing them would take 0.2 s per full collection.
@@ -144,6 +144,10 @@ class Desktop(QObject):
     def _follow_system(self) -> None:
         if self.preferences.theme == "system":
             apply_theme(self.app, "system")
+
+    def _hear_thread(self, args: threading.ExceptHookArgs) -> None:
+        if args.exc_value is not None:
+            self._hear_mistake(args.exc_type, args.exc_value, args.exc_traceback)
 
     def _hear_mistake(self, kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         if isinstance(error, KeyboardInterrupt) or not isinstance(error, Exception):

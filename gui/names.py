@@ -20,7 +20,7 @@ def breakable(text: str) -> str:
     (True, 2)
     """
 
-    def parted(found: re.Match[str]) -> str:
+    def split_word(found: re.Match[str]) -> str:
         return re.sub(rf"({SIGNS}|[^_\-./\\:]{{{LONGEST}}})(?=.)", rf"\1{_GAP}", found[0])
 
-    return re.sub(rf"\S{{{LONGEST + 1},}}", parted, text)
+    return re.sub(rf"\S{{{LONGEST + 1},}}", split_word, text)

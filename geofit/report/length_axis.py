@@ -33,6 +33,6 @@ def upright(axes: Axes) -> None:
     low, high = axes.get_ylim()
     tall = axes.get_window_extent().height / axes.figure.dpi * 72
     for label, value in zip(axes.get_yticklabels(), axes.get_yticks(), strict=True):
-        half = DIGIT * label.get_fontsize() * len(label.get_text()) / 2
+        half = DIGIT * float(label.get_fontsize()) * len(label.get_text()) / 2
         place = (value - low) / (high - low) * tall
         label.set(rotation=90, va="bottom" if place < half else "top" if place > tall - half else "center")

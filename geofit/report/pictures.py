@@ -24,7 +24,7 @@ from geofit.report.histogram import histogram, normal_plot
 from geofit.report.result import HorizonResult
 from geofit.report.section_sheet import draw_section, section_sheet
 from geofit.report.stereonet import StereonetContent, angles, stereonet
-from geofit.report.style import CORE, FAIL, HORIZONS, MUTED, PASS, TEXT, WARNING, columns, drawing, shortened
+from geofit.report.style import CORE, FAIL, HORIZONS, MUTED, PASS, TEXT, WARNING, drawing, legend_columns, shortened
 from geofit.report.uncertainty import uncertainty_map
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ def draw_site(results: Sequence[HorizonResult], t: Language = EN) -> Pictures:
         names = [shortened(result.name) for result in results]
         swatches = [Swatch(facecolor=HORIZONS[i % len(HORIZONS)], label=name) for i, name in enumerate(names)]
         figure.legend(
-            handles=swatches, loc="lower left", ncols=columns(names, 25.4 * WIDTH, TYPE, 6), handlelength=1.2,
+            handles=swatches, loc="lower left", ncols=legend_columns(names, 25.4 * WIDTH, TYPE, 6), handlelength=1.2,
             borderaxespad=0, bbox_to_anchor=(0, 0.045), columnspacing=1.4,
         )  # fmt: skip
         figure.text(

@@ -15,7 +15,17 @@ from geofit.report.accuracy_report import SectionSheet
 from geofit.report.digits import tick
 from geofit.report.furniture import exaggeration_for, scale_bar, scale_for, scale_text
 from geofit.report.profile import THICKNESS, Profile, along_polyline
-from geofit.report.style import LINE, MUTED, PAPER, TEXT, columns, drawing, horizon_colours, kind_style, shortened
+from geofit.report.style import (
+    LINE,
+    MUTED,
+    PAPER,
+    TEXT,
+    drawing,
+    horizon_colours,
+    kind_style,
+    legend_columns,
+    shortened,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -170,7 +180,7 @@ def _profile(axes: Axes, profile: Profile, colour: str, ground: tuple[Floats, Fl
 def _holes(axes: Axes, section: Section, site: Site, near: float, limits: tuple[float, float]) -> set[str]:
     """Draw the holes near the section, projected onto it, with their names above; return their kinds."""
     named: list[float] = []
-    kinds = set()
+    kinds: set[str] = set()
     low, high = limits
     length = axes.get_xlim()[1]
     for hole in sorted(site.holes, key=lambda one: float(along_polyline(section.line, one.xyz[:1, :2])[0][0])):
@@ -242,7 +252,7 @@ def _legend(
     for hole_kind in sorted(kinds):
         handles.append(Line2D([], [], color=kind_style(hole_kind)[1], lw=0.9, label=translate(hole_kind, t)))
     height = figure.get_size_inches()[1] / MM
-    ncols = columns([str(one.get_label()) for one in handles], SHEET - LEFT, 6.5, 5)
+    ncols = legend_columns([str(one.get_label()) for one in handles], SHEET - LEFT, 6.5, 5)
     figure.legend(
         handles=handles, loc="lower left", bbox_to_anchor=(LEFT / SHEET, 1.0 / height), ncols=ncols, fontsize=6.5,
         handlelength=1.8, columnspacing=1.4, borderaxespad=0, handletextpad=0.5,

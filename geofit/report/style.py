@@ -31,8 +31,10 @@ __all__ = [
     "drawing",
     "horizon_colours",
     "kind_style",
+    "legend_columns",
     "quiet_axes",
     "rgb",
+    "shortened",
 ]  # fmt: skip
 
 TEXT, MUTED, LINE, PAPER = "#1c2733", "#5d6b7a", "#d4dae1", "#ffffff"
@@ -94,13 +96,13 @@ def shortened(name: str, most: int = 28) -> str:
     return name if len(name) <= most else f"{name[: most - 1 - half]}…{name[-half:]}"
 
 
-def columns(labels: Iterable[str], room: float, size: float, most: int) -> int:
+def legend_columns(labels: Iterable[str], room: float, size: float, most: int) -> int:
     """Return how many columns of a legend fit into a room (mm) with type of a size (points), ``most`` at most.
 
     Examples
     --------
-    >>> columns(["T1", "T2"], 155.0, 6.5, 5), columns(["x" * 28], 155.0, 6.5, 5), columns(["风化" * 14], 155.0, 6.5, 5)
-    (5, 3, 1)
+    >>> [legend_columns([name], 155.0, 6.5, 5) for name in ("T1", "x" * 28, "风化" * 14)]
+    [5, 3, 1]
     """
     letters = max((sum(1 + (ord(c) > 0x2E80) for c in label) for label in labels), default=1)
     return int(min(max(room / (0.55 * size * 0.3528 * letters + 9.0), 1), most))
