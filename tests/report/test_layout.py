@@ -292,19 +292,20 @@ def test_the_legend_of_a_section_names_the_kinds_of_holes_that_are_drawn():
     assert "adit" not in words
 
 
-class _Font(FPDF):
-    """Pages with the fonts of a Chinese report."""
-
-    def __init__(self):
-        super().__init__()
-        found = fonts.pdf_fonts(chinese=True)
-        for family, style, font in (("text", "", found.regular), ("signs", "", found.signs)):
-            self.add_font(family, style, font.path, collection_font_number=font.index)
+@pytest.fixture
+def chinese_type():
+    """A typesetter with the fonts of a Chinese report, whose files are closed at the end."""
+    pdf, found = FPDF(), fonts.pdf_fonts(chinese=True)
+    for family, font in (("text", found.regular), ("signs", found.signs)):
+        pdf.add_font(family, "", font.path, collection_font_number=font.index)
+    yield Typesetter(pdf)
+    for font in pdf.fonts.values():
+        font.close()
 
 
 @pytest.mark.skipif(NO_FONT, reason="no font with Chinese characters")
-def test_chinese_lines_hold_units_to_numbers_and_end_with_two_characters():
-    type_, pen = Typesetter(_Font()), Pen(8.0)
+def test_chinese_lines_hold_units_to_numbers_and_end_with_two_characters(chinese_type):
+    type_, pen = chinese_type, Pen(8.0)
     text = "留出误差 2.061 m = 4.1 ε（留一分块法）；90 % 预测带含 90 %（留一钻孔），最大高差，m"
     for room in np.arange(20.0, 80.0, 0.7):
         lines = type_.lines(text, room, pen)
