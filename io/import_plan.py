@@ -77,8 +77,10 @@ class ImportPlan:
         return False
 
 
-def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: str, plan: ImportPlan) -> None:
-    """Preview a file and put its tables where they belong."""
+def look_at(
+    path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: str, unit: str | None, plan: ImportPlan
+) -> None:
+    """Preview a file and put its tables where they belong; ``unit`` is that of lengths whose mapping states none."""
     name = _relative(path, folder)
     if legible(name) != name:
         plan.set_aside(
@@ -101,6 +103,7 @@ def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: st
         mapping = replace(preview.mapping, file=name)
         if own is not None:
             mapping = replace(own, file=name, table=preview.table, columns={**mapping.columns, **own.columns})
+        mapping = replace(mapping, unit=mapping.unit or unit)
         part = TablePart(name, preview, mapping, part_source)
         if preview.kind == "skip":
             plan.set_aside(

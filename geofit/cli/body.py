@@ -11,7 +11,18 @@ import typer
 from geofit.cli.app import app
 from geofit.cli.body_lines import BodyLines, body_lines
 from geofit.cli.console import list_issues, listening, print_counts, print_json, print_table, say, with_exit_code
-from geofit.cli.options import Author, Certificate, Json, Lang, LanguageCode, Organisation, OriginChoice, Out, Report
+from geofit.cli.options import (
+    Author,
+    Certificate,
+    Json,
+    Lang,
+    LanguageCode,
+    LengthUnit,
+    Organisation,
+    OriginChoice,
+    Out,
+    Report,
+)
 from geofit.cli.signing import read_origin, signed_by
 from geofit.data.errors import InputError
 from geofit.data.messages import Message, message
@@ -48,13 +59,7 @@ def body(
     intervals: Annotated[
         list[Path] | None, typer.Option(help="With a collar table: logged intervals; may be repeated.")
     ] = None,
-    unit: Annotated[
-        str | None,
-        typer.Option(
-            help="Unit of all lengths of tables, drawings and GeoJSON: m, ft, ft-us (US survey foot), km, cm, mm. "
-            "Default: as headers mark, else m."
-        ),
-    ] = None,
+    unit: LengthUnit = None,
     epsilon: Annotated[float, typer.Option(help="Control error for sigma, m.")] = 0.5,
     author: Author = None,
     organisation: Organisation = None,

@@ -7,7 +7,7 @@ import re
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
@@ -81,7 +81,7 @@ def with_exit_code(command: Callable[P, int]) -> Callable[P, None]:
             say("Stopped. Files that were begun have been removed; finished ones are whole.")
             code = 130
         except GeofitError as error:
-            _list_reasons(error, kwargs.get("out"))
+            _list_reasons(error, kwargs)
             say(f"geofit: {error}")
             code = 2
         except OSError as error:
@@ -101,16 +101,27 @@ def with_exit_code(command: Callable[P, int]) -> Callable[P, None]:
     return run
 
 
-def _list_reasons(error: GeofitError, out: object) -> None:
-    """List what was found before an error, in the folder of results where the command has one."""
+def _list_reasons(error: GeofitError, options: Mapping[str, object]) -> None:
+    """List what was found before an error, where the command lists what it finds."""
     if not error.issues:
         return
-    # geofit export names a file there.
-    folder = out if isinstance(out, Path) and (out.is_dir() or not out.suffix) else None
     try:
-        list_issues(error.issues, folder)
-    except GeofitError:  # the folder cannot be written: the reason is still to be seen
-        list_issues(error.issues, None)
+        _list(error.issues, _issue_file(options))
+    except GeofitError:  # the file cannot be written: the reason is still to be seen
+        _list(error.issues, None)
+
+
+def _issue_file(options: Mapping[str, object]) -> Path | None:
+    """Return the table of issues in the folder of results, or beside the site file that is made; None without them."""
+    out, site = options.get("out"), options.get("site")
+    if isinstance(out, Path):
+        # geofit export names a file there.
+        return out / "import_issues.csv" if out.is_dir() or not out.suffix else None
+    if isinstance(site, Path):
+        from geofit.project.importing import issue_file_of
+
+        return issue_file_of(site)
+    return None
 
 
 def _system_library(message: str) -> str | None:
@@ -254,12 +265,15 @@ def print_table(header: Sequence[str], rows: Sequence[Sequence[str]], left: Sequ
 
 def list_issues(issues: Sequence[ImportIssue], folder: Path | None) -> None:
     """Write what the readers found to ``import_issues.csv`` and summarise it; without a folder, print all of it."""
-    file = None if folder is None else folder / "import_issues.csv"
+    _list(issues, None if folder is None else folder / "import_issues.csv")
+
+
+def _list(issues: Sequence[ImportIssue], file: Path | None) -> None:
     # An earlier run's list would be taken for this one's.
-    if folder is not None and file is not None and (issues or file.exists()):
+    if file is not None and (issues or file.exists()):
         from geofit.report.tables import write_issues
 
-        folder_for(folder)
+        folder_for(file.parent)
         write_issues(issues, file)
     print_issues(issues, str(file or ""))
 

@@ -9,7 +9,7 @@ import typer
 
 from geofit.cli.app import app
 from geofit.cli.console import listening, print_counts, print_issues, print_json, print_table, say, with_exit_code
-from geofit.cli.options import Json
+from geofit.cli.options import Json, LengthUnit
 
 __all__ = ["import_"]
 
@@ -21,6 +21,7 @@ def import_(
     site: Annotated[Path, typer.Option(metavar="OUT.toml", help="The site file; mapping and issues go with it.")],
     mapping: Annotated[Path | None, typer.Option(help="Mapping (TOML) of columns that a guess would miss.")] = None,
     crs: Annotated[str, typer.Option(help="Coordinate system of the site, EPSG:number; degrees are projected.")] = "",
+    unit: LengthUnit = None,
     base: Annotated[list[str] | None, typer.Option(help="Code whose base is a horizon; may be repeated.")] = None,
     top: Annotated[list[str] | None, typer.Option(help="Code whose top is a horizon; may be repeated.")] = None,
     as_json: Json = False,
@@ -34,7 +35,14 @@ def import_(
     mappings = load_mappings(mapping) if mapping is not None else ()
     with listening() as progress:
         found = import_files(
-            files, site, mappings=mappings, crs=crs, base=tuple(base or ()), top=tuple(top or ()), progress=progress
+            files,
+            site,
+            mappings=mappings,
+            crs=crs,
+            unit=unit,
+            base=tuple(base or ()),
+            top=tuple(top or ()),
+            progress=progress,
         )
     print_issues(found.issues, str(found.issue_file))
     print_counts(found.counts)

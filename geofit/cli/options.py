@@ -61,6 +61,14 @@ Unit = Annotated[
         help="CSV: unit of all lengths: m, ft, ft-us (US survey foot), km, cm, mm. Default: as headers mark, else m."
     ),
 ]
+LengthUnit = Annotated[
+    str | None,
+    typer.Option(
+        "--unit",
+        help="Unit of all lengths of tables, drawings, grids and GeoJSON: m, ft, ft-us (US survey foot), km, cm, mm. "
+        "Default: as headers mark, else m.",
+    ),
+]
 Sep = Annotated[str | None, typer.Option(help="CSV: separator: one character, 'tab' or 'space'. Default: found.")]
 Decimal = Annotated[str | None, typer.Option(help="CSV: decimal mark, '.' or ','. Default: found.")]
 Crs = Annotated[

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from geofit.io.columns import SCHEMAS
 from geofit.io.import_plan import ImportPlan, TablePart, campaigns
 
 __all__ = ["Tables", "site_tables"]
@@ -68,8 +69,11 @@ def site_tables(
 
 
 def _named(part: TablePart) -> dict[str, Any]:
-    """Return a part as keys of its own table."""
-    return {"file": part.name, **({"table": part.preview.table} if part.preview.table else {})}
+    """Return a part as keys of its own table; a grid or drawing, of which no mapping is written, with its unit."""
+    keys = {"file": part.name, **({"table": part.preview.table} if part.preview.table else {})}
+    if part.mapping.unit and part.preview.kind not in SCHEMAS:
+        keys["unit"] = part.mapping.unit
+    return keys
 
 
 def _as_read(part: TablePart) -> dict[str, Any]:

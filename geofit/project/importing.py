@@ -30,9 +30,10 @@ from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping, save_mappings
 from geofit.io.site_file import build_site
 from geofit.io.source import Source
+from geofit.io.units import metres_of
 from geofit.project.import_tables import Tables, site_tables
 
-__all__ = ["Import", "import_files"]
+__all__ = ["Import", "import_files", "issue_file_of"]
 
 #: Fewer contacts make no surface: the code gets no [[horizon]] unless it is asked for.
 FEWEST_CONTACTS = 3
@@ -67,6 +68,7 @@ def import_files(
     *,
     mappings: Sequence[ColumnMapping] = (),
     crs: str = "",
+    unit: str | None = None,
     base: Sequence[str] = (),
     top: Sequence[str] = (),
     progress: Progress | None = None,
@@ -84,6 +86,8 @@ def import_files(
         How tables are read where a guess would be wrong.
     crs : str
         Coordinate system of the site; longitude and latitude are projected to it where it is a code.
+    unit : str, optional
+        Unit of all lengths of files whose mapping states none, instead of the one that their headers mark.
     base, top : sequence of str
         Codes whose base or top are horizons; without any, the base of each code that has three contacts.
     progress : callable, optional
@@ -94,7 +98,8 @@ def import_files(
     Raises
     ------
     InputError
-        If no file is given, or none exists.
+        If no file is given, the unit is unknown, or the site cannot be read; ``issues`` of the error are also in
+        ``..._issues.csv``.
     MissingDependencyError
         If a format's package is not installed.
     """
@@ -113,12 +118,14 @@ def import_files(
             message("data.choose-another-name", "Choose another name."),
             file=legible(str(site_file)),
         )
+    if unit is not None:
+        metres_of(unit)
     folder = folder_for(site_file.parent)
+    mapping_file = site_file.with_name(f"{site_file.stem}_mapping.toml")
     plan = ImportPlan()
     for i, file in enumerate(files):
         tell(progress, "inspect files", 0.3 * i / len(files))
-        look_at(Path(file), folder, mappings, crs, plan)
-    mapping_file = site_file.with_name(f"{site_file.stem}_mapping.toml")
+        look_at(Path(file), folder, mappings, crs, unit, plan)
     while True:
         complete(plan)
         horizons = _horizons(plan, site_file, mapping_file, crs, base, top, language)
@@ -128,7 +135,9 @@ def import_files(
             site = _read(tables, plan, site_file)
             break
         except InputError as error:
-            if not plan.drop(error):
+            # A code that was asked for is no fault of the file.
+            if error.code == "io.code-not-logged" or not plan.drop(error):
+                error.issues = (*error.issues, *plan.issues)
                 raise
     _write(tables, plan, site_file, mapping_file)
     written = Journal()
@@ -136,12 +145,17 @@ def import_files(
     site = replace(site, inputs={**written.inputs, **site.inputs})
     issues = (*site.issues, *plan.issues, *_guesses(plan))
     counts = (*site.counts, *plan.counts)
-    issue_file = site_file.with_name(f"{site_file.stem}_issues.csv")
+    issue_file = issue_file_of(site_file)
     from geofit.report.tables import write_issues
 
     write_issues(issues, issue_file, language)
     tell(progress, "imported", 1.0)
     return Import(site, site_file, mapping_file, issue_file, issues, counts)
+
+
+def issue_file_of(site_file: Path) -> Path:
+    """Return where the import of a site lists what it found."""
+    return site_file.with_name(f"{site_file.stem}_issues.csv")
 
 
 def _guesses(plan: ImportPlan) -> list[ImportIssue]:

@@ -138,6 +138,43 @@ def test_the_command(folder):
     assert run.exit_code == 2
 
 
+def test_a_unit_holds_for_every_file_whose_mapping_states_none(folder):
+    """Metres, read as feet: every length is 0.3048 of before, tables, drawing and grid alike, when read again too."""
+    drawing = ezdxf.new()
+    drawing.modelspace().add_line((10, 80), (40, 82), dxfattribs={"layer": "fault"})
+    drawing.saveas(folder / "C1.dxf")
+    files = [folder / name for name in ("collar.csv", "log.csv", "lines.csv", "C1.dxf", "ground.asc", "outline.csv")]
+    metres = import_files(files, folder / "m.toml").site
+    import_files(files, folder / "f.toml", unit="feet")
+    feet = read_site(folder / "f.toml")
+    assert set(feet.horizons) == set(metres.horizons) == {"base of clay", "fault"}
+    for name, points in metres.horizons.items():
+        np.testing.assert_allclose(feet.horizons[name].xyz, 0.3048 * points.xyz)
+    np.testing.assert_allclose(feet.ground.z, 0.3048 * metres.ground.z)
+    np.testing.assert_allclose(feet.boundary, 0.3048 * metres.boundary)
+    stated = ColumnMapping(file="log.csv", kind="intervals", columns={"code": "rock"}, unit="m")
+    one = import_files(files[:2], folder / "o.toml", mappings=[stated], unit="ft").site
+    np.testing.assert_allclose(one.horizons["base of clay"].xyz[0, 2], 100 * 0.3048 - 10)
+    with pytest.raises(InputError, match="The unit 'yard' is unknown"):
+        import_files(files, folder / "y.toml", unit="yard")
+
+
+def test_an_import_that_fails_lists_what_it_found(folder):
+    """No site file, but the table of issues that an import writes, and the code that was asked for as the reason."""
+    from typer.testing import CliRunner
+
+    from geofit.cli.main import app
+
+    names = [str(folder / name) for name in ("collar.csv", "survey.csv", "log.csv", "junk.csv")]
+    run = CliRunner().invoke(app, ["import", *names, "--site", str(folder / "s.toml"), "--base", "klay"])
+    assert run.exit_code == 2
+    assert "s_issues.csv" in run.output
+    assert "geofit: log.csv: No interval has the code 'klay'" in run.output
+    assert not (folder / "s.toml").exists()
+    with (folder / "s_issues.csv").open(encoding="utf-8-sig", newline="") as stream:
+        assert {row["file"] for row in csv.DictReader(stream)} >= {"survey.csv", "junk.csv"}
+
+
 def test_a_drawing_is_placed_by_its_line(folder):
     drawing = ezdxf.new()
     drawing.modelspace().add_line((10, 80), (40, 82), dxfattribs={"layer": "fault"})
