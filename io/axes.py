@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,8 @@ _BINS = 19
 _CHUNK = 1 << 16
 #: Rows are strays beyond this many extents of the others, if they are no more than this share of all.
 STRAY, STRAYS = 3.0, 0.05
+#: (0, 0) is a placeholder where the places lie farther than this from it, metres.
+ORIGIN = 1000.0
 
 #: West, east, south, north of the place where points are expected, metres.
 Region = tuple[float, float, float, float]
@@ -42,7 +44,7 @@ def place_in(xy: Floats, region: Region) -> Literal["inside", "exchanged", "off"
 
 
 def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
-    """Reject rows whose x and y look exchanged, and warn of rows far off.
+    """Reject rows at the placeholder (0, 0) or whose x and y look exchanged, and warn of rows far off.
 
     A row looks exchanged when it lies outside ``region`` and would lie inside with x and y swapped. Without a
     region the rows themselves make one: 20 median distances around their median; of the rows outside it, the
@@ -56,6 +58,8 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
     used = int(rows.ok.sum())
     if used == 0:
         return
+    _reject_placeholders(rows, x, y, region)
+    used = int(rows.ok.sum())
     known = region is not None
     box = region if region is not None else _crowd(x, y) if used == len(rows) else _crowd(x[rows.ok], y[rows.ok])
     if box is None:
@@ -109,26 +113,44 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
         )
 
 
+def _reject_placeholders(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
+    """Reject rows at (0, 0) where the other places are nowhere near: programs write it for a place that is unknown."""
+    zero = (x == 0) & (y == 0) & rows.ok
+    others = rows.ok & ~zero
+    if not (zero.any() and others.any()):
+        return
+    box = region or _crowd(x[others], y[others]) or grown_box(np.column_stack((x[others], y[others])))
+    if _Box(*box).away(0.0, 0.0) <= ORIGIN:
+        return
+    for i in np.flatnonzero(zero).tolist():
+        rows.reject(
+            i,
+            "x",
+            message("io.row-at-placeholder", "x = 0, y = 0 marks a place that is unknown: the others are far from it"),
+            message("io.complete-coordinates", "Complete its coordinates, or remove the row."),
+        )
+
+
 def _warn_of_strays(rows: Rows, x: Floats, y: Floats, off: NDArray[np.intp], box: Region) -> None:
     """Warn of the few rows that lie several times the extent of all others away from them."""
     if not off.size:
         return
     middle = (box[0] + box[1]) / 2, (box[2] + box[3]) / 2
     off = off[np.argsort(np.hypot(x[off] - middle[0], y[off] - middle[1]), kind="stable")]
-    near = _inside(x, y, box) & rows.ok
-    west, east, south, north = x[near].min(), x[near].max(), y[near].min(), y[near].max()
+    groups: list[list[int]] = [[]]
+    around = _Box.of(x, y, _inside(x, y, box) & rows.ok)
+    for i in off.tolist():
+        # Outwards from the crowd: a thin rim widens the extent step by step, a gap begins another group.
+        if around.away(x[i], y[i]) > STRAY * around.extent:
+            groups.append([])
+        groups[-1].append(i)
+        around = around.with_place(x[i], y[i])
     few = max(1, int(STRAYS * rows.ok.sum()))
-    for k, i in enumerate(off.tolist()):
-        # Outwards from the crowd: a thin rim widens the extent step by step.
-        extent = max(float(np.hypot(east - west, north - south)), 1.0)
-        away = float(np.hypot(max(west - x[i], x[i] - east, 0.0), max(south - y[i], y[i] - north, 0.0)))
-        if away > STRAY * extent and off.size - k <= few:
-            break
-        west, east, south, north = min(west, x[i]), max(east, x[i]), min(south, y[i]), max(north, y[i])
-    else:
-        return
-    for i in off[k:].tolist():
-        away = float(np.hypot(max(west - x[i], x[i] - east, 0.0), max(south - y[i], y[i] - north, 0.0)))
+    strays = [i for group in groups[1:] if len({(x[i], y[i]) for i in group}) <= few for i in group]
+    others = rows.ok.copy()
+    others[strays] = False
+    around = _Box.of(x, y, others)
+    for i in strays:
         rows.warn(
             i,
             "x",
@@ -137,11 +159,34 @@ def _warn_of_strays(rows: Rows, x: Floats, y: Floats, off: NDArray[np.intp], box
                 "x = {x:.15g}, y = {y:.15g} lies {distance:.0f} m from the other rows, which cover {extent:.0f} m",
                 x=x[i],
                 y=y[i],
-                distance=away,
-                extent=extent,
+                distance=around.away(x[i], y[i]),
+                extent=around.extent,
             ),
             message("io.check-stray-coordinates", "Check its coordinates, or remove the row."),
         )
+
+
+class _Box(NamedTuple):
+    """What places cover: west, east, south, north."""
+
+    west: float
+    east: float
+    south: float
+    north: float
+
+    @classmethod
+    def of(cls, x: Floats, y: Floats, mask: NDArray[np.bool_]) -> _Box:
+        return cls(x[mask].min(), x[mask].max(), y[mask].min(), y[mask].max())
+
+    @property
+    def extent(self) -> float:
+        return max(float(np.hypot(self.east - self.west, self.north - self.south)), 1.0)
+
+    def away(self, x: float, y: float) -> float:
+        return float(np.hypot(max(self.west - x, x - self.east, 0.0), max(self.south - y, y - self.north, 0.0)))
+
+    def with_place(self, x: float, y: float) -> _Box:
+        return _Box(min(self.west, x), max(self.east, x), min(self.south, y), max(self.north, y))
 
 
 def _crowd(x: Floats, y: Floats) -> Region | None:

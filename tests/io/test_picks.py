@@ -163,7 +163,7 @@ def test_names_that_differ_in_case_only_are_one_horizon(write):
     ] == ["t2 = T2"]
 
 
-@pytest.mark.parametrize(("x", "y"), [(900000, 3100500), (0, 0), (500050, 3900000)])
+@pytest.mark.parametrize(("x", "y"), [(900000, 3100500), (0, 3100500), (500050, 3900000)])
 def test_a_place_far_from_all_others_is_warned_of(write, x, y):
     rng = np.random.default_rng(1)
     rows = [f"{500000 + a:.1f},{3100000 + b:.1f},10" for a, b in rng.uniform(0, 900, (30, 2))]
@@ -181,4 +181,56 @@ def test_a_thin_rim_around_a_dense_core_is_not_far(write):
     core, rim = rng.uniform(-40, 40, (80, 2)), rng.uniform(-2500, 2500, (25, 2))
     rows = [f"{500000 + a:.1f},{3100000 + b:.1f},10" for a, b in np.concatenate([core, rim])]
     found = read_points(write("\n".join(["x,y,z", *rows]) + "\n"))
+    assert "io.row-far-from-others" not in [issue.reason.code for issue in found.issues]
+
+
+def test_placeholders_exchanged_and_far_places_do_not_hide_each_other(write):
+    """300 real places: (0, 0) and exchanged ones are not used, those 100 km or a continent away are warned of."""
+    rng = np.random.default_rng(2)
+    xy = np.array([500000.0, 3100000.0]) + rng.uniform(0, 3000, (300, 2))
+    angle = rng.uniform(0, 2 * np.pi, 10)
+    far = xy[:10] + 1e5 * np.column_stack((np.cos(angle), np.sin(angle)))
+    every = {"near": xy, "zero": np.zeros((40, 2)), "exchanged": xy[:9, ::-1], "far": far,
+             "same": np.full((30, 2), 9999999.0)}  # fmt: skip
+    kinds = np.repeat(list(every), [len(part) for part in every.values()])
+    places = np.concatenate(list(every.values()))
+    order = rng.permutation(len(places))
+    rows = [f"{x:.2f},{y:.2f},{z}" for z, (x, y) in enumerate(places[order])]
+    found = read_points(write("\n".join(["x,y,z", *rows]) + "\n"))
+    listed = {}
+    for issue in found.issues:
+        if issue.row:
+            listed.setdefault(issue.reason.code, set()).add(kinds[order][issue.row - 2])
+            assert issue.severity == ("warning" if issue.reason.code.endswith(("others", "differ")) else "error")
+    assert listed.pop("io.horizon-elevations-differ") == {"same"}
+    assert listed == {
+        "io.row-at-placeholder": {"zero"},
+        "io.row-axes-exchanged": {"exchanged"},
+        "io.row-far-from-others": {"far", "same"},
+    }
+    told = [issue.reason for issue in found.issues if issue.reason.code == "io.row-far-from-others"]
+    assert len(told) == 40
+    assert max(reason.params["extent"] for reason in told) < 4300
+    assert [len(points) for points in found.horizons.values()] == [340]
+
+
+@pytest.mark.parametrize("others", [[(500000, 3100000)], [(500000 + i, 3100000 + i * i) for i in range(6)]])
+def test_a_placeholder_among_few(write, others):
+    text = "x,y,z\n" + "".join(f"{x},{y},1\n" for x, y in (*others, (0, 0)))
+    found = read_points(write(text))
+    assert [len(points) for points in found.horizons.values()] == [len(others)]
+
+
+@pytest.mark.parametrize("others", [[(800, 0)], [(300 * i, 500) for i in range(6)], [(0, 7)] * 9])
+def test_the_origin_of_a_local_grid_is_a_place(write, others):
+    text = "x,y,z\n" + "".join(f"{x},{y},1\n" for x, y in (*others, (0, 0)))
+    (points,) = read_points(write(text)).horizons.values()
+    assert len(points) == len(others) + 1
+
+
+def test_two_sites_are_no_strays(write):
+    """A twelfth of the places, 80 km away, are another site."""
+    rng = np.random.default_rng(3)
+    xy = np.concatenate((rng.uniform(0, 2000, (220, 2)), 80000 + rng.uniform(0, 2000, (20, 2))))
+    found = read_points(write("x,y,z\n" + "".join(f"{x:.1f},{y:.1f},5\n" for x, y in xy)))
     assert "io.row-far-from-others" not in [issue.reason.code for issue in found.issues]
