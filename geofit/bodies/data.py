@@ -217,7 +217,7 @@ def prepare(data: BodyData, coincidence_distance: float) -> Prepared:
             )
             issues.append(BodyIssue("coincident", text))
     found = Prepared(contacts, normals, member, inside, outside, inside_used, outside_used, tuple(issues))
-    _require_body(data, found)
+    _require_body(data, found, coincidence_distance)
     return found
 
 
@@ -314,7 +314,17 @@ def _sides(
     return used[0], used[1]
 
 
-def _require_body(data: BodyData, found: Prepared) -> None:
+def _require_body(data: BodyData, found: Prepared, coincidence_distance: float) -> None:
+    if len(found.contacts) == 1 < len(data.contacts):
+        raise FitError(
+            message(
+                "bodies.contacts-all-coincide",
+                "All {count} contacts lie within the coincidence distance of {distance:g} m of each other, so they count "
+                "as one. Give coordinates in metres, or a smaller coincidence_distance.",
+                count=len(data.contacts),
+                distance=coincidence_distance,
+            )
+        )
     oriented = np.isfinite(found.normals).all(axis=1).any()
     given = {"contacts": len(found.contacts), "inside": len(found.inside), "outside": len(found.outside)}
     _require_agreement(data, found, oriented=bool(oriented))

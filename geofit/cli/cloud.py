@@ -31,6 +31,7 @@ def fit_cloud_file(
     orientations: Path | None,
 ) -> int:
     """Fit one surface to a file of points that need not fit into the memory; return the exit code."""
+    from geofit.fitting.conflicts import places_lost
     from geofit.io.boundary import read_boundary
     from geofit.io.clouds import open_cloud
     from geofit.io.orientations import read_orientations
@@ -69,6 +70,8 @@ def fit_cloud_file(
             verdict="PASS" if accuracy.passed else "FAIL",
         )
     )
+    for note in places_lost(len(done.fit.coincident), done.fit.n, done.fit.settings.coincidence_distance):
+        say(note)
     if done.dips is not None:
         say(done.dips.text)
     say(message("cli.cloud-files", "Surface, figures, grid of deviations and distances are in {folder}", folder=out))

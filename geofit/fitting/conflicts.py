@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from geofit.data.accuracy import Conflict
 from geofit.data.labels import Labels
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 
-__all__ = ["near_pairs", "resolve_conflicts", "trust_of", "trust_of_kinds"]
+__all__ = ["near_pairs", "note_lost_places", "places_lost", "resolve_conflicts", "trust_of", "trust_of_kinds"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -22,6 +24,11 @@ ABREAST = 64
 NARROWEST = 16
 #: Places that are swept together (memory).
 SLAB = 1 << 19
+
+#: Places nearer than this are one place that was written twice, metres.
+ONE_PLACE = 1e-7
+#: Share of all points from which on lost places are warned of.
+MANY = 0.05
 
 #: Where the sources state no accuracy, the one that was measured nearer to the rock is kept.
 _TRUST = {"borehole": 0, "adit": 1, "outcrop": 2, "point": 3, "map": 4, "section": 5, "geophysics": 6}
@@ -69,6 +76,31 @@ def resolve_conflicts(
             kept[loser] = False
             conflicts.append(_describe(points, winner, loser, float(height[loser] - height[winner])))
     return kept, tuple(conflicts)
+
+
+def note_lost_places(conflicts: Sequence[Conflict], place: Floats, distance: float) -> tuple[Message, ...]:
+    """Return a note where points were dropped at places of their own: data as fine as the distance, or not in metres.
+
+    ``place`` (n, k) is where each point stands on the surface, ``distance`` (m) that of coincident points.
+    """
+    kept, dropped = ([getattr(one, end) for one in conflicts] for end in ("kept", "dropped"))
+    apart = np.linalg.norm(place[kept] - place[dropped], axis=1)
+    return places_lost(int((apart > ONE_PLACE).sum()), len(place), distance)
+
+
+def places_lost(lost: int, total: int, distance: float) -> tuple[Message, ...]:
+    """Return a note where points were lost to the distance of coincident ones (m); of many of them it is a warning."""
+    if not lost:
+        return ()
+    note = message(
+        "fitting.places-lost",
+        "{count} of {total} points take no part in the fit: each lies within {distance:g} m of another. Where these are "
+        "places of their own, give a smaller coincidence_distance, or the coordinates in metres.",
+        count=lost,
+        total=total,
+        distance=distance,
+    )
+    return (note.with_severity("warning" if lost > MANY * total else "info"),)
 
 
 def near_pairs(place: Floats, distance: float) -> Ints:

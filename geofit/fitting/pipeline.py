@@ -14,7 +14,7 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Orientations
 from geofit.data.threads import one_thread
 from geofit.fitting.adjust import adjust_locally
-from geofit.fitting.conflicts import resolve_conflicts
+from geofit.fitting.conflicts import note_lost_places, resolve_conflicts
 from geofit.fitting.exactness import exact_or_not
 from geofit.fitting.horizon_fit import HorizonFit, fit_of
 from geofit.fitting.model import Problem
@@ -105,12 +105,12 @@ def posed(
     """Return what there is to solve: the points parametrized, without conflicts, and parted into core and periphery."""
     stage("conflicts", 0.0)
     parametrization = parametrize(points, settings, corners)
-    kept, conflicts = resolve_conflicts(
-        points, parametrization.places, parametrization.heights, settings.coincidence_distance
-    )
+    places, distance = parametrization.places, settings.coincidence_distance
+    kept, conflicts = resolve_conflicts(points, places, parametrization.heights, distance)
+    lost = note_lost_places(conflicts, places, distance)
     stage("partition", 0.1)
     split = partition(parametrization, settings, kept)
     stage("fit", 0.2)
     slopes, notes = slopes_of(orientations, name, parametrization, settings)
-    parametrization = replace(parametrization, notes=(*parametrization.notes, *notes))
+    parametrization = replace(parametrization, notes=(*parametrization.notes, *lost, *notes))
     return Problem(points, settings, corners, parametrization, split, kept, conflicts, name, slopes=slopes)

@@ -5,10 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+from refusals import refused, with_code
 from scipy.spatial import KDTree
 from scipy.spatial.distance import pdist
 
-from geofit import PointSet
+from geofit import BodyData, PointSet, fit_body, fit_horizon
+from geofit.data.errors import FitError
 from geofit.fitting.conflicts import near_pairs, resolve_conflicts
 
 
@@ -135,3 +137,22 @@ def test_pairs_are_those_of_a_tree(n, size, columns):
 def test_places_in_one_line_are_paired_across_the_borders_of_strips():
     place = np.column_stack([np.zeros(500), np.arange(500) * 0.009])
     assert len(near_pairs(place, 0.01)) == 499
+
+
+def test_points_lost_to_the_distance_are_no_secret():
+    """A model of 100 mm, in metres: most of its points lie within the 10 mm of coincident ones."""
+    xyz = np.random.default_rng(0).uniform(0, 0.1, (200, 3))
+    fit = fit_horizon(PointSet(xyz))
+    note = with_code(fit.accuracy.notes, "fitting.places-lost")
+    lost = len(fit.accuracy.conflicts)
+    assert note.severity == "warning"
+    assert (note.params["count"], note.params["total"], lost > 100) == (lost, 200, True)
+    metres = fit_horizon(PointSet(np.vstack([1000 * xyz, 1000 * xyz[:5]])))
+    assert len(metres.accuracy.conflicts) == 5
+    assert "fitting.places-lost" not in [one.code for one in metres.accuracy.notes]
+
+
+def test_contacts_that_all_coincide_are_no_body():
+    unit = np.random.default_rng(0).normal(size=(30, 3))
+    with refused(FitError, "bodies.contacts-all-coincide", count=30):
+        fit_body(BodyData(contacts=1e-8 * unit, normals=unit))
