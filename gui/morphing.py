@@ -12,12 +12,14 @@ from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
 from geofit.bodies.settings import BodySettings
 from geofit.data.errors import MissingDependencyError
 from geofit.data.files import file_stems
-from geofit.data.messages import message
+from geofit.data.messages import gravest_first, message
 from geofit.gui.activity import Activity
 from geofit.gui.bodies import Bodies
 from geofit.gui.dialogs.horizon_bodies import HorizonBodies
 from geofit.gui.filming import Filming
 from geofit.gui.fitting import Fitting
+from geofit.gui.lengths import in_lengths
+from geofit.gui.translate import translated
 from geofit.gui.worker import Task, run
 from geofit.gui.workspace import Workspace
 from geofit.implicit.mesh import TriangleMesh
@@ -262,7 +264,7 @@ class Morphing(QObject):
         self.rest(self._panel.timeline.tau)
 
     def _say(self, view: MorphView) -> None:
-        """Say which parts are never reached and which vanish; nothing if there are none."""
+        """Say which parts are never reached and which vanish, and the notes on the full grid; nothing without any."""
         morph, words = view.preview, []
         for parts, text in (
             (morph.unreached, self.tr("Not reached by any front: {n} parts, {volume:.4g} m³.")),
@@ -272,7 +274,8 @@ class Morphing(QObject):
                 words.append(text.format(n=len(parts), volume=sum(part.volume for part in parts)))
         if morph.unreached and not view.way.seeds and view.full is None:
             words.append(self.tr("Seed them and press Join, or press Join to go on without."))
-        self._panel.say(" ".join(words))
+        notes = [in_lengths(translated(note)) for note in gravest_first(view.notes)]
+        self._panel.say("\n".join(filter(None, (" ".join(words), *notes))))
 
     def _draw(self) -> None:
         view, tau = self.view, self._wanted

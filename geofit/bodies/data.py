@@ -319,8 +319,8 @@ def _require_body(data: BodyData, found: Prepared, coincidence_distance: float) 
         raise FitError(
             message(
                 "bodies.contacts-all-coincide",
-                "All {count} contacts lie within the coincidence distance of {distance:g} m of each other, so they count "
-                "as one. Give coordinates in metres, or a smaller coincidence_distance.",
+                "All {count} contacts lie within the coincidence distance of {distance:g} m of each other, so they "
+                "count as one. Give coordinates in metres, or a smaller coincidence_distance.",
                 count=len(data.contacts),
                 distance=coincidence_distance,
             )

@@ -109,8 +109,11 @@ def section_planes(outlines: Sequence[Outline]) -> tuple[SectionPlane, ...]:
     PointsError
         If the outlines of a section do not lie on one plane, or bound no area.
     """
+    return _planes(_distinct(outlines)[0])
+
+
+def _planes(outlines: Sequence[Outline]) -> tuple[SectionPlane, ...]:
     planes = []
-    outlines = _distinct(outlines)[0]
     for name in dict.fromkeys(outline.section for outline in outlines):
         rings = [outline.xyz for outline in outlines if outline.section == name]
         corners = np.concatenate(rings)
@@ -185,7 +188,8 @@ def from_outlines(outlines: Sequence[Outline], step: float | None = None, *, mar
                     value=repr(length),
                 )
             )
-    planes = section_planes(outlines)
+    distinct, repeated = _distinct(outlines)
+    planes = _planes(distinct)
     areas = [abs(_area(ring)) for plane in planes for ring in plane.rings]
     step = float(np.sqrt(np.median(areas))) / STEPS if step is None else step
     contacts: list[Floats] = []
@@ -208,7 +212,7 @@ def from_outlines(outlines: Sequence[Outline], step: float | None = None, *, mar
         hole=names[0],
         inside_hole=names[1],
         outside_hole=names[2],
-        issues=tuple(_repeated(outline) for outline in _distinct(outlines)[1]),
+        issues=tuple(_repeated(outline) for outline in repeated),
     )
 
 

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from geofit.data.accuracy import Check
 from geofit.data.guard import guarded
 from geofit.data.languages import Language, language
 from geofit.data.messages import Message, message
@@ -48,6 +49,7 @@ def write_horizon(
     where: Where = HERE,
     signed: Signed | None = None,
     horizon: str = "",
+    orders: tuple[Check, ...] = (),
     progress: Progress | None = None,
 ) -> Made | Message:
     """Examine a surface, and write what belongs to it: ``.step``, ``.png``, ``.json`` and ``_residuals.csv``.
@@ -74,6 +76,8 @@ def write_horizon(
         What the STEP files state, and whether they get a certificate.
     horizon : str
         Name of the horizon where the surface is one fault block of it.
+    orders : tuple of Check
+        How the horizon lies to its neighbours.
     progress : callable, optional
         ``progress(stage, fraction)``; False stops.
 
@@ -83,11 +87,9 @@ def write_horizon(
         The message states what unforeseen error the work ended with.
     """
     failed: list[Message] = []
-    t = language(code)
+    t, heard, stated = language(code), progress or _deaf, signed or Signed()
     made = guarded(
-        lambda: _written(
-            surface, site, stem, progress or _deaf, t, seconds, bands, sections, where, signed or Signed(), horizon
-        ),
+        lambda: _written(surface, site, stem, heard, t, seconds, bands, sections, where, stated, horizon, orders),
         None,
         failed.append,
     )
@@ -100,8 +102,7 @@ def _deaf(stage: str | Message, fraction: float, /) -> None:
 
 def _written(
     surface: HorizonFit, site: Site, stem: Path, progress: Progress, t: Language, fit: float, bands: bool,
-    sections: Sequence[Section], where: Where, signed: Signed,
-    horizon: str,
+    sections: Sequence[Section], where: Where, signed: Signed, horizon: str, orders: tuple[Check, ...],
 ) -> Made:  # fmt: skip
     from geofit.cad.step import write_step
     from geofit.prediction.examine import examine
@@ -129,7 +130,9 @@ def _written(
     clock.stop("STEP and read-back")
     progress("pictures", 0.7)
     storage, missing = storage_compared(surface)
-    result = HorizonResult(surface, site, back, storage, path.stat().st_size, prediction=prediction, horizon=horizon)
+    result = HorizonResult(
+        surface, site, back, storage, path.stat().st_size, prediction=prediction, orders=orders, horizon=horizon
+    )
     profiles, uncut = section_profiles(result, sections)
     result = replace(result, profiles=profiles)
     pictures = draw_pictures(result, t)

@@ -135,7 +135,7 @@ def import_files(
             site = _read(tables, plan, site_file)
             break
         except InputError as error:
-            # A code that was asked for is no fault of the file.
+            # The file is not at fault where it lacks a code that was asked for.
             if error.code == "io.code-not-logged" or not plan.drop(error):
                 error.issues = (*error.issues, *plan.issues)
                 raise

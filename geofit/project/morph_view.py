@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geofit.bodies.settings import BodySettings
+from geofit.data.messages import Message
 from geofit.data.progress import Progress, tell
 from geofit.project.body_building import BodyResult
 from geofit.project.body_record import BodyProvenance, MorphFrame
@@ -55,13 +56,14 @@ class MorphWay:
 
 @dataclass(frozen=True, eq=False)
 class MorphView:
-    """What a slider needs: a quick metamorphosis and its changes of topology; then full grid, and figures of frames."""
+    """What a slider needs: a quick metamorphosis and its changes of topology; then full grid, notes and figures."""
 
     way: MorphWay
     preview: Morph
     events: tuple[Event, ...]
     full: Morph | None = None
     rows: tuple[FrameRow, ...] = ()
+    notes: tuple[Message, ...] = ()
 
 
 def way_of(way: MorphWay, cells: int) -> dict[str, Any]:
@@ -92,11 +94,11 @@ def previewed(way: MorphWay, shapes: Sequence[Any], *, progress: Progress) -> Mo
 
 
 def finished(view: MorphView, shapes: Sequence[Any], *, progress: Progress) -> MorphView:
-    """Return the same with the full grid, and the figures of frames; errors as :func:`previewed`."""
+    """Return the same with the full grid, its notes and the figures of frames; errors as :func:`previewed`."""
     from geofit.morphing.morph import morph
 
     full = morph(*shapes, **way_of(view.way, FULL), progress=progress)
-    return replace(view, full=full, rows=view.preview.table(FRAMES, progress))
+    return replace(view, full=full, rows=view.preview.table(FRAMES, progress), notes=full.notes)
 
 
 def frame_body(full: Morph, tau: float, *, progress: Progress) -> MorphBody:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.accuracy import Check
 from geofit.data.errors import InputError
 from geofit.data.files import file_stems, folder_for, replacing
 from geofit.data.guard import guarded
@@ -199,29 +200,24 @@ def _write_results(
     from geofit.report.gather import accuracy_report
     from geofit.report.pictures import draw_sections
     from geofit.report.profile import report_sections
-    from geofit.report.schema import horizon_document, write_json
 
     failures, warnings = dict(fits.failures), [*fits.warnings, *_without_dips(site, fits)]
     sections = report_sections(site, [surface.points for surface in fits.surfaces.values()]) if fits.surfaces else ()
-    made, whole = _examined(site, fits, out, hands, progress, language, bands, sections, failures, where, signed)
+    ordered, unordered = _orders(site, fits)
+    orders = ordered or ()
+    made, whole = _examined(
+        site, fits, orders, out, hands, progress, language, bands, sections, failures, where, signed
+    )
     results = [one.result for one in made]
     images = {name: picture for one in made for name, picture in one.images.items()}
     warnings += [text for one in made for text in one.warnings]
     parts = _bodies(site, bodies, fits, out, hands, progress, language, failures, signed)
     images |= {name: picture for part in parts for name, picture in part.images.items()}
-    orders: tuple[Order, ...] = ()
     report: AccuracyReport | None = None
     if results:
         tell(progress, "report", 0.9)
         bare = [replace(result, surface=result.surface.with_(model=None)) for result in results]
         drawn = [hands.begin(partial(draw_sections, bare, (section,), language)) for section in sections]
-        ordered, unordered = _orders(site, fits)
-        orders = ordered or ()
-        results = _with_orders(results, orders, fits)
-        stems = file_stems(fits.surfaces)
-        for result in results:
-            if any(check.passed is False for check in result.orders):
-                write_json(horizon_document(result), out / f"{stems[result.name]}.json")
         report = accuracy_report(
             results, ordered, cuts=fits.cuts, contradictions=fits.contradictions, failures=failures, date=date,
             sections=sections,
@@ -258,8 +254,9 @@ def _bodies(
 
 
 def _examined(
-    site: Site, fits: SiteFit, out: Path, hands: Crew, progress: Progress | None, language: Language, bands: bool,
-    sections: Sequence[Section], failures: dict[str, Message], where: Where, signed: Signed,
+    site: Site, fits: SiteFit, orders: Sequence[Order], out: Path, hands: Crew, progress: Progress | None,
+    language: Language, bands: bool, sections: Sequence[Section], failures: dict[str, Message], where: Where,
+    signed: Signed,
 ) -> tuple[list[Made], Pictures]:  # fmt: skip
     """Examine every surface and write its files, and draw them together, side by side; note those that failed."""
     from geofit.report.pictures import Pictures, draw_site
@@ -270,7 +267,7 @@ def _examined(
     tasks: list[Callable[[], Made | Message | Pictures]] = [
         partial(
             write_horizon, fits.surfaces[name], site, out / stems[name], language.code, fits.seconds[name], bands,
-            sections, where, signed, fits.horizon[name],
+            sections, where, signed, fits.horizon[name], _checks(orders, fits.horizon[name]),
         )
         for name in order
     ]  # fmt: skip
@@ -392,7 +389,7 @@ def write_reports(
         surfaces = {result.name: result.surface for result in made}
         fits = SiteFit(surfaces, {name: name for name in surfaces})
     orders, unordered = _orders(made[0].site, fits)
-    made = _with_orders(made, orders or (), fits)
+    made = [replace(one, orders=_checks(orders or (), fits.horizon[one.name])) for one in made]
     report = accuracy_report(made, orders, cuts=fits.cuts, date=date, sections=sections)
     if pictured:
         images |= draw_sections(made, sections, language)
@@ -437,16 +434,9 @@ def _orders(site: Site, fits: SiteFit) -> tuple[tuple[Order, ...] | None, Messag
     return compared, missing[0] if missing else EMPTY
 
 
-def _with_orders(results: Sequence[HorizonResult], orders: Sequence[Order], fits: SiteFit) -> list[HorizonResult]:
-    """Return the results with how their horizons lie to others: part of their verdicts."""
-    return [
-        replace(result, orders=tuple(order.check() for order in orders if fits.horizon[result.name] in _pair(order)))
-        for result in results
-    ]
-
-
-def _pair(order: Order) -> tuple[str, str]:
-    return order.upper, order.lower
+def _checks(orders: Sequence[Order], horizon: str) -> tuple[Check, ...]:
+    """Return how a horizon lies to others: part of the verdict."""
+    return tuple(order.check() for order in orders if horizon in (order.upper, order.lower))
 
 
 def _write_report(

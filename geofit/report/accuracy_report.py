@@ -130,7 +130,7 @@ class FileCheck:
 
 @dataclass(frozen=True)
 class ConflictLine:
-    """Two points that contradict each other: which was used, which were dropped, by how much (m), and why."""
+    """Two coincident points: which was used, which were dropped, by how much (m), and why."""
 
     kept: Message
     dropped: Message

@@ -19,7 +19,7 @@ def interventions(report: AccuracyReport, t: Language) -> Chapter:
     blocks: list[Block] = []
     for title, nothing, of in (
         (t("Excluded points"), t("No point was left out by hand."), _excluded),
-        (t("Points that contradict each other"), t("None."), _conflicts),
+        (t("Coincident points"), t("No point coincides with another one."), _conflicts),
         (t("Manual edits"), t("No surface was changed by hand."), _edits),
         (t("Outliers"), t("None."), _outliers),
         (t("Suggested boreholes"), t("No holes are suggested."), _suggestions),

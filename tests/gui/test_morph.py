@@ -163,6 +163,20 @@ def test_what_is_never_reached_is_told_before_the_run(bodies):
     assert bodies.morphing.view.full is not None
 
 
+def test_notes_on_the_full_grid_are_shown(bodies, tmp_path):
+    """A part of 20 m in bodies of 520 m is 5 of its cells thick: as the command line says, so does the panel."""
+    for name, radius in (("old", 9.0), ("new", 10.0)):
+        write(tmp_path / f"{name}.ply", Sphere([0, 0, 0], 30.0), Sphere([480, 0, 0], radius))
+        bodies.window.bodies.take_mesh(tmp_path / f"{name}.ply")
+        bodies.idle()
+    join(bodies, "old", "new")
+    notes = bodies.morphing.view.notes
+    coarse = [note.params["name"] for note in notes if note.code == "morphing.cells-too-coarse"]
+    assert coarse == ["old", "new"]
+    assert bodies.panel.said.isVisible()
+    assert bodies.panel.said.text() == "\n".join(map(str, notes))
+
+
 def test_dates_and_order_are_those_of_the_list(bodies):
     panel = bodies.panel
     panel.list.insertItem(0, panel.list.takeItem(1))

@@ -226,6 +226,20 @@ def test_a_report_of_surfaces_at_hand_needs_no_fit(tmp_path):
     assert not (tmp_path / "s" / "report.json").exists()
 
 
+def test_picture_json_and_run_count_the_same_checks(tmp_path, monkeypatch):
+    """The order with the neighbours is among them from the beginning, whether it passes or not."""
+    drawn = {}
+    monkeypatch.setattr(
+        "geofit.report.pictures.write_picture", lambda result, *_: drawn.update({result.name: result.verdict})
+    )
+    made = run_horizons(crossing(), tmp_path)
+    for result in made.results:
+        data = json.loads((tmp_path / f"{result.name}.json").read_text(encoding="utf-8"))
+        assert drawn[result.name] == result.verdict
+        assert [lamp["text"]["text"] for lamp in data["lamps"]] == [str(lamp.text) for lamp in result.verdict.lamps]
+        assert "order" in str(result.verdict.lamps[1].text)
+
+
 def test_bands_and_order_are_delivered(tmp_path):
     made = run_horizons(crossing(), tmp_path, bands=True)
     names = {path.name for path in tmp_path.iterdir()}
