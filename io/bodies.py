@@ -6,6 +6,7 @@ from os import PathLike
 from pathlib import Path
 
 from geofit.data.errors import InputError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.mesh import TriangleMesh
 
@@ -15,6 +16,7 @@ __all__ = ["BODY_ENDINGS", "read_body"]
 BODY_ENDINGS = (".stl", ".obj", ".ply", ".ts", ".step", ".stp")
 
 
+@arguments_checked
 def read_body(path: str | PathLike[str], name: str = "") -> TriangleMesh:
     """Read a closed body: a triangle mesh, or a solid, which becomes triangles.
 

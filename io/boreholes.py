@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
+from geofit.data.given import arguments_checked
 from geofit.data.logs import IntervalLog
 from geofit.data.messages import Untranslated, message
 from geofit.data.site import Ground, Hole, ImportIssue, TableCount
@@ -56,6 +57,7 @@ class _Collar:
     stations: Stations | None
 
 
+@arguments_checked
 def read_boreholes(
     collar: str | Path | Source,
     survey: str | Path | Source | None = None,

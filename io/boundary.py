@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.geometry.area import fault_of_area
 from geofit.io.columns import BOUNDARY
@@ -25,6 +26,7 @@ __all__ = ["load_boundary", "read_boundary"]
 Floats = NDArray[np.float64]
 
 
+@arguments_checked
 def read_boundary(path: str | Path | Source) -> Floats:
     """Read the corners of the study area.
 

@@ -11,6 +11,7 @@ import numpy as np
 from geofit.caves.shots import ShotList, require_length
 from geofit.caves.survey import LONGEST, Survey
 from geofit.data.errors import InputError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import Untranslated, message
 from geofit.io.columns import ADIT_PATH, Schema, plain_name
 from geofit.io.formats import read_any_table
@@ -53,6 +54,7 @@ CENTRELINE = Schema(
 _SIZES = ("radius", "width", "height", "left", "right", "up", "down")
 
 
+@arguments_checked
 def read_centreline(
     source: Source | str | Path, journal: Journal | None = None, *, level: Literal["axis", "floor"] = "axis"
 ) -> Survey:

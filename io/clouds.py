@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.data.site import ImportIssue
 from geofit.io.columns import PICKS, Schema, plain_name
@@ -81,6 +82,7 @@ def is_cloud(path: Path) -> bool:
     return form != ""
 
 
+@arguments_checked
 def open_cloud(
     path: Path,
     columns: Mapping[str, str | int | None] | None = None,

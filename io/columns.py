@@ -56,53 +56,55 @@ def _spelled(words: str) -> tuple[str, ...]:
 _HOLE = _spelled(
     "hole holeid bhid holename holenumber holeno borehole boreholeid boreholename boreholeno drillhole dhid collarid "
     "locationid locaid pointid well wellid wellname bore boreid wellbore uwi "
-    "孔号 钻孔编号 钻孔号 钻孔 钻孔名称 孔名 勘探点编号 bohrung originalname id name 编号"
+    "孔号 钻孔编号 钻孔号 钻孔 钻孔名称 孔名 勘探点编号 bohrung bohrloch originalname id name 编号"
 )
 _X = _spelled(
     "x east easting eastings locanate holenate xcollar collarx xcoord xcoordinate coordx locationx locx "
     "pointx utme utmeasting "
-    "e 坐标x x坐标 东坐标 东 东向坐标 横坐标 rechtswert"
+    "e 坐标x x坐标 东坐标 东 东向坐标 横坐标 rechtswert ostwert"
 )
 _Y = _spelled(
     "y north northing northings locanatn holenatn ycollar collary ycoord ycoordinate coordy locationy locy pointy utmn "
-    "utmnorthing n 坐标y y坐标 北坐标 北 北向坐标 纵坐标 hochwert"
+    "utmnorthing n 坐标y y坐标 北坐标 北 北向坐标 纵坐标 hochwert nordwert"
 )
 _Z = _spelled(
     "z elevation elev locagl holegl zcollar collarz zcoord zcoordinate coordz rl altitude height level groundlevel gl "
     "groundelevation collarelevation surfaceelevation pointz msl "
-    "孔口高程 孔口标高 高程 标高 地面高程 坐标z z坐标 海拔 höhe hoehe"
+    "孔口高程 孔口标高 高程 标高 地面高程 坐标z z坐标 海拔 höhe hoehe ansatzhöhe geländehöhe"
 )
 _END = _spelled(
     "depth maxdepth locafdep holefdep totaldepth finaldepth enddepth eoh eohdepth td holedepth length holelength "
-    "孔深 终孔深度 终孔孔深 钻孔深度 总深度 总深 深度"
+    "孔深 终孔深度 终孔孔深 钻孔深度 总深度 总深 深度 endteufe"
 )
 _STATION = _spelled(
-    "depth at md horntop measureddepth surveydepth distance depthat stationdepth 深度 测点深度 测斜深度 测深 孔深 井深"
+    "depth at md horntop measureddepth surveydepth distance depthat stationdepth 深度 测点深度 测斜深度 测深 孔深 井深 "
+    "tiefe teufe"
 )
 _AZIMUTH = _spelled(
-    "azimuth azi az azim azm hornornt holeornt brg bearing dipazimuth dipdirection dipdir hazi 方位角 方位 倾向"
+    "azimuth azi az azim azm hornornt holeornt brg bearing dipazimuth dipdirection dipdir hazi 方位角 方位 倾向 azimut"
 )
-_DIP = _spelled("dip dipangle hornincl holeincl plunge 倾角 倾斜角 倾伏角")
+_DIP = _spelled("dip dipangle hornincl holeincl plunge 倾角 倾斜角 倾伏角 neigung fallen einfallen")
 _FROM = _spelled(
     "from depthfrom fromdepth start top depthtop topdepth geoltop "
     "起始深度 起深 起始 层顶深度 层顶埋深 顶板深度 顶板埋深 顶深 自 从 起 "
-    "topelevation elevationtop 层顶高程 层顶标高 顶板高程 顶板标高"
+    "topelevation elevationtop 层顶高程 层顶标高 顶板高程 顶板标高 von"
 )
 _TO = _spelled(
     "to depthto todepth end bottom base depthbase basedepth depthbottom bottomdepth geolbase "
     "终止深度 止深 终止 结束深度 层底深度 层底埋深 底板深度 底板埋深 底深 至 到 止 "
-    "baseelevation elevationbase bottomelevation elevationbottom 层底高程 层底标高 底板高程 底板标高"
+    "baseelevation elevationbase bottomelevation elevationbottom 层底高程 层底标高 底板高程 底板标高 bis"
 )
 _CODE = _spelled(
     "code rockcode lithcode lithologycode geologycode unitcode "
     "stratumcode legendcode geolgeol geolleg lithology lith "
     "rock rocktype rockunit unit formation stratum stratigraphy strat simplelith geology weathering "
     "地层代号 代号 代码 编码 地层编号 层号 地层 岩性代号 岩性 "
-    "岩性名称 岩石名称 岩土名称 地层名称 土层名称 岩层 风化程度 风化带 风化 风化等级"
+    "岩性名称 岩石名称 岩土名称 地层名称 土层名称 岩层 风化程度 风化带 风化 风化等级 "
+    "schicht gestein petrographie stratigraphie"
 )
 _HORIZON = _spelled(
     "horizon surface formation featurename feature interface contact surfacename horizonname layer "
-    "层位 界面 地层界面 界面名称 层面 地质界面 界线 地质界线"
+    "层位 界面 地层界面 界面名称 层面 地质界面 界线 地质界线 horizont"
 )
 _SECTION = _spelled("section sectionid sectionname profile line 剖面 剖面号 剖面编号 剖面名称")
 _ADIT = _spelled("adit aditid aditname tunnel gallery 平硐 平硐编号 平硐号 平洞 平洞编号 平洞号 硐号 洞号 探洞")

@@ -16,6 +16,7 @@ import numpy as np
 from geofit.caves.shots import ShotList, polar, require_length
 from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import Untranslated, message
 from geofit.io.journal import Journal
 from geofit.io.source import Source, as_source
@@ -42,6 +43,7 @@ class _Header:
     walls_at_end: bool = False
 
 
+@arguments_checked
 def read_compass(source: Source | str | Path, journal: Journal | None = None) -> Survey:
     """Read a Compass survey file.
 

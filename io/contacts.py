@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
+from geofit.data.given import arguments_checked
 from geofit.data.logs import LoggedHoles
 from geofit.data.messages import Message, Untranslated, message
 from geofit.data.points import PointSet
@@ -29,6 +30,7 @@ class Contacts:
     issues: tuple[ImportIssue, ...]
 
 
+@arguments_checked
 def take_contacts(boreholes: Boreholes, *, top: str | None = None, base: str | None = None) -> Contacts:
     """Return where the holes cross the top or the base of a code.
 

@@ -240,8 +240,8 @@ def _warn_of_unit(unit: int, source: Source, journal: Journal, scale_stated: boo
             ),
             message(
                 "io.state-scale-or-unit",
-                "Where that is so, state the unit (--unit of geofit import and geofit body, unit in a site file) or, of "
-                "a section, scale = {scale:g}.",
+                "Where that is so, state the unit (--unit of geofit import and geofit body, unit in a site file) or, "
+                "of a section, scale = {scale:g}.",
                 scale=per_metre,
             ),
         )

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from geofit.data.errors import InputError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import Untranslated, message, plural_message
 from geofit.data.points import PointSet
 from geofit.data.site import Ground
@@ -32,6 +33,7 @@ _KEYS = {
 }
 
 
+@arguments_checked
 def read_ground(path: str | Path | Source) -> Ground:
     """Read a grid of elevations; cells without data are nan.
 

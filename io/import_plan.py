@@ -78,7 +78,7 @@ class ImportPlan:
 
 
 def look_at(
-    path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: str, unit: str | None, plan: ImportPlan
+    path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: str, plan: ImportPlan, unit: str | None = None
 ) -> None:
     """Preview a file and put its tables where they belong; ``unit`` is that of lengths whose mapping states none."""
     name = _relative(path, folder)

@@ -10,6 +10,7 @@ from typing import Any
 
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
+from geofit.data.given import arguments_checked
 from geofit.data.messages import Untranslated, message
 from geofit.data.numbers import shown
 from geofit.io.columns import SCHEMAS
@@ -25,6 +26,7 @@ VERSION = 1
 KINDS = (*SCHEMAS, "ground", "grid", "drawing", "skip")
 
 
+@arguments_checked
 @dataclass(frozen=True, kw_only=True)
 class ColumnMapping:
     """How one table, or every table of a layout, is read.
@@ -98,6 +100,7 @@ class ColumnMapping:
         return self.fill(Source(path=Path(path)))
 
 
+@arguments_checked
 def save_mappings(
     mappings: Sequence[ColumnMapping], path: str | Path, remarks: Mapping[tuple[int, str], str] | None = None
 ) -> None:
@@ -143,6 +146,7 @@ def _printable(text: str) -> str:
     return "".join(letter if letter.isprintable() else " " for letter in text)
 
 
+@arguments_checked
 def load_mappings(path: str | Path) -> tuple[ColumnMapping, ...]:
     """Read column mappings: which column of which table has which role.
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.given import arguments_checked
 from geofit.data.labels import Labels
 from geofit.data.legible import legible
 from geofit.data.messages import message
@@ -39,6 +40,7 @@ class Picks:
     inputs: Mapping[str, str]
 
 
+@arguments_checked
 def read_points(
     path: str | Path,
     x: str | int | None = None,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from geofit.data.errors import GeofitError
+from geofit.data.given import arguments_checked
 from geofit.data.site import ImportIssue
 from geofit.io.columns import HORIZON_COLUMNS, SCHEMAS, SECTIONS, Schema
 from geofit.io.formats import TABLE_FORMATS, USUAL_TABLES, read_any_table, table_names
@@ -102,6 +103,7 @@ class TablePreview:
         )
 
 
+@arguments_checked
 def preview_file(path: str | Path | Source, mappings: Sequence[ColumnMapping] = ()) -> tuple[TablePreview, ...]:
     """Return a preview of each table of a file.
 
@@ -157,6 +159,7 @@ def preview_file(path: str | Path | Source, mappings: Sequence[ColumnMapping] = 
     return tuple(previews)
 
 
+@arguments_checked
 def preview_table(source: Source, kind: str | None = None) -> TablePreview:
     """Preview one table.
 

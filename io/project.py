@@ -33,6 +33,7 @@ from geofit import __version__
 from geofit.data.accuracy import plain
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.files import replacing
+from geofit.data.given import arguments_checked
 from geofit.data.legible import legible
 from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
@@ -154,6 +155,7 @@ class Project:
         return found
 
 
+@arguments_checked
 def save_project(
     project: Project,
     path: str | PathLike[str],
@@ -240,6 +242,7 @@ def save_project(
     return saved
 
 
+@arguments_checked
 def open_project(path: str | PathLike[str]) -> Project:
     """Read a project file of this or any older version.
 

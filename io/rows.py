@@ -22,7 +22,7 @@ from geofit.io.guess import WORDS, find_columns
 from geofit.io.journal import Journal, Severity
 from geofit.io.source import Source, as_source
 from geofit.io.tables import Table, parse_numbers
-from geofit.io.units import ANGLES, DEGREES, LENGTHS, METRES, length_factors, with_unit
+from geofit.io.units import ANGLES, DEGREES, LENGTHS, METRES, angle_factors, length_factors, with_unit
 
 __all__ = ["NO_DATA", "Rows", "read_rows"]
 
@@ -37,12 +37,12 @@ class Rows:
     """The rows of a table under their roles.
 
     ``ok`` (n,) is True for rows that are still used; :meth:`reject` lists a row and takes it out.
-    ``factors`` holds the metres of one unit of the length columns that are not in metres.
+    ``factors`` holds the metres, or degrees, of one unit of the columns that are in another one.
     """
 
     def __init__(self, table: Table, columns: dict[str, int], source: Source, journal: Journal) -> None:
         self.table, self.columns, self.source, self.journal = table, columns, source, journal
-        self.factors = length_factors(table, columns, source, journal)
+        self.factors = length_factors(table, columns, source, journal) | angle_factors(table, columns, journal)
         self.file = table.name
         self.line = table.lines
         self.ok: Mask = np.ones(len(table), dtype=bool)
@@ -114,7 +114,7 @@ class Rows:
         number, unit = found
         if role in LENGTHS:
             return number if METRES.get(unit) == self.factors.get(role, 1.0) else None
-        return number if unit == DEGREES and role in ANGLES else None
+        return number if unit == DEGREES and role in ANGLES - self.factors.keys() else None
 
     def places(self) -> tuple[Floats, Floats]:
         """Return easting and northing (n,) in metres, projected where the source's system is not the wanted one.

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.logs import LoggedHoles
 from geofit.data.messages import Untranslated, message
 from geofit.data.points import KINDS, PointSet
@@ -59,6 +60,7 @@ class _Horizon:
     settings: FitSettings
 
 
+@arguments_checked
 def read_site(path: str | Path, progress: Progress | None = None, *, added: Sequence[str] = ()) -> Site:
     """Read a site file and everything that it names.
 

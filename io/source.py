@@ -8,12 +8,14 @@ from pathlib import Path
 
 from geofit.data.errors import InputError
 from geofit.data.files import is_file
+from geofit.data.given import arguments_checked
 from geofit.data.legible import legible
 from geofit.data.messages import message
 
 __all__ = ["Source", "as_source"]
 
 
+@arguments_checked
 @dataclass(frozen=True, kw_only=True)
 class Source:
     """A table file with whatever the user overrules; what is ``None`` is guessed, and the guess is listed.

@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path
 
 from geofit.data.errors import InputError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.surfaces.mesh_surface import MeshSurface
 from geofit.surfaces.patch_surface import PatchSurface
@@ -23,6 +24,7 @@ def is_surface_file(path: str | PathLike[str]) -> bool:
     return Path(path).suffix.casefold() in ENDINGS
 
 
+@arguments_checked
 def read_surface(path: str | PathLike[str], name: str = "") -> PatchSurface | MeshSurface:
     """Read one surface of a file: NURBS patches, or triangles.
 
@@ -63,6 +65,7 @@ def read_surface(path: str | PathLike[str], name: str = "") -> PatchSurface | Me
     return found[name]
 
 
+@arguments_checked
 def read_surfaces(
     paths: str | PathLike[str] | Sequence[str | PathLike[str]],
 ) -> dict[str, PatchSurface | MeshSurface]:

@@ -17,6 +17,7 @@ from geofit.caves.shots import ShotList, polar, require_length, require_walls
 from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
 from geofit.data.files import is_file
+from geofit.data.given import arguments_checked
 from geofit.data.messages import EMPTY, Message, Untranslated, message
 from geofit.data.site import ImportIssue
 from geofit.io.journal import Journal, Severity
@@ -362,6 +363,7 @@ class _Reader:
                 found.add_walls(names[i], next(shots, -1), (left, right, up, down))
 
 
+@arguments_checked
 def read_survex(source: Source | str | Path, journal: Journal | None = None) -> Survey:
     """Read a Survex survey file and the files that it includes.
 

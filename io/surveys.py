@@ -70,6 +70,19 @@ class Stations:
                 message("io.station-dip-out-of-range", "The dip is not between -90 and 90 degrees"),
                 message("io.give-angle-from-horizontal", "Give the angle from horizontal."),
             )
+        beyond = np.flatnonzero((azimuth > 360.0) & rows.ok)
+        if len(beyond) > 1 and azimuth[beyond].max() <= 400.0:
+            rows.warn(
+                int(beyond[0]),
+                "azimuth",
+                message(
+                    "io.azimuths-like-gon",
+                    "{count} azimuths lie between 360 and 400, none beyond: they may be in gon, and all are read as "
+                    "degrees",
+                    count=len(beyond),
+                ),
+                message("io.mark-gon", "Where they are in gon, write so in the header, as in 'azimuth (gon)'."),
+            )
         for i in np.flatnonzero((np.abs(azimuth) > 360.0) & rows.ok).tolist():
             rows.reject(
                 i,

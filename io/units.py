@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.messages import Untranslated, message
 from geofit.io.columns import plain_name
 from geofit.io.journal import Journal
 from geofit.io.source import Source
@@ -17,6 +18,7 @@ __all__ = [
     "DEGREES",
     "LENGTHS",
     "METRES",
+    "angle_factors",
     "grid_unit",
     "length_factors",
     "list_conversion",
@@ -48,6 +50,10 @@ LENGTHS = frozenset(
 )
 #: Roles that are angles, and what their unit is called here.
 ANGLES, DEGREES = frozenset({"azimuth", "dip", "strike"}), "deg"
+
+#: Degrees of one unit of the angles that a header marks; "grad" is none: a degree in German, a gon in English.
+_ANGLE_UNITS = dict.fromkeys(("gon", "gons", "gradian", "gradians", "百分度"), 0.9)
+_ANGLE_UNITS |= dict.fromkeys(("rad", "radian", "radians", "弧度"), 180.0 / math.pi)
 
 _WITH_UNIT = re.compile(r"(.*\d[.,]?)\s*([^\W\d_].*|°)")
 _DEGREE_WORDS = {"°", "度", "deg", "degree", "degrees"}
@@ -122,6 +128,29 @@ def length_factors(table: Table, columns: Mapping[str, int], source: Source, jou
     given = source.unit or source.usual_unit
     if given is not None and (roles := [role for role, factor in factors.items() if factor in (stated, usual)]):
         list_conversion(given, tuple(roles), source.name, journal)
+    return factors
+
+
+def angle_factors(table: Table, columns: Mapping[str, int], journal: Journal) -> dict[str, float]:
+    """Return the degrees of one unit of each column of angles whose header marks gon or radians; each is listed."""
+    factors: dict[str, float] = {}
+    for role in sorted(ANGLES & columns.keys()):
+        header = table.header[columns[role]]
+        mark = plain_name(header)[1].casefold()
+        if mark in _ANGLE_UNITS:
+            factors[role] = _ANGLE_UNITS[mark]
+            journal.add(
+                "note",
+                table.name,
+                message(
+                    "io.angles-converted",
+                    "The {role} is marked as {mark}; it is converted to degrees (1 {mark} = {degrees:.10g}°)",
+                    role=role,
+                    mark=Untranslated(mark),
+                    degrees=factors[role],
+                ),
+                column=header,
+            )
     return factors
 
 

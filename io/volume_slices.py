@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.io.volume_raw import map_meta_image, shape_and_type
 from geofit.io.volume_tiff import slice_files
@@ -55,6 +56,7 @@ class _TiffPages:
         return np.stack(found)
 
 
+@arguments_checked
 def open_volume(
     path: str | PathLike[str],
     *,

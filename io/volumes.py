@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import GeofitError, InputError
 from geofit.data.files import is_file
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.io.volume_raw import read_meta_image, shape_and_type
 from geofit.io.volume_tiff import read_tiff, read_tiff_folder
@@ -34,6 +35,7 @@ _PART = 1 << 26
 KINDS = "raw, mhd, mha, tif, npy, npz, zarr, also as .gz or in a .zip"
 
 
+@arguments_checked
 def read_volume(
     path: str | PathLike[str],
     *,

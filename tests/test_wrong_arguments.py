@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import inspect
+
 import numpy as np
 import pytest
+from refusals import refused
 
 import geofit
 from geofit.data.errors import ArgumentError, SettingsError
+from geofit.implicit import Sphere, foot_points
 
 XYZ = np.random.default_rng(0).uniform((500000, 3100000, 900), (500100, 3100100, 905), (40, 3))
 
@@ -104,3 +108,81 @@ def test_a_volume_without_rock_has_no_contacts():
         geofit.pore_surface(volume)
     assert told.value.code == "pores.no-rock"
     assert geofit.pore_surface(volume, construction="blend").triangulate(0.5).volume > 0
+
+
+FUNCTIONS = sorted(
+    {
+        getattr(package, name)
+        for package in (geofit, geofit.io)
+        for name in package.__all__
+        if inspect.isfunction(getattr(package, name))
+    },
+    key=lambda function: function.__name__,
+)
+
+
+class Odd:
+    """Nothing that a function takes."""
+
+
+@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda function: function.__name__)
+def test_every_function_refuses_what_it_cannot_take(function):
+    """None, another object, bytes and a dict in place of what is needed; keywords that are unknown; nothing at all."""
+    parameters = inspect.signature(function).parameters.values()
+    needed = [one.name for one in parameters if one.default is one.empty and one.kind != one.VAR_POSITIONAL]
+    for wrong in (None, Odd(), b"x", {"q": 1}, 1.5):
+        with pytest.raises(geofit.GeofitError):
+            function(**dict.fromkeys(needed, wrong))
+    if needed:
+        with refused(ArgumentError, "data.arguments-unfit"):
+            function()
+    with refused(ArgumentError, "data.argument-unknown", name="qqqqqq"):
+        function(**dict.fromkeys(needed, None), qqqqqq=1)
+
+
+def test_a_mistyped_keyword_suggests_the_right_one(fit):
+    for call in (
+        lambda: geofit.FitSettings(epsilom=1),
+        lambda: geofit.BodySettings(epsilom=1),
+        lambda: fit.judged_by(epsilom=1),
+        lambda: fit.settings.__class__(epsilon=1, epsilom=1),
+    ):
+        with refused(ArgumentError, "data.argument-mistyped", name="epsilom", near="epsilon"):
+            call()
+    with refused(ArgumentError, "data.argument-mistyped", name="boundry", near="boundary"):
+        geofit.Site("s", {}, boundry=None)
+    with refused(ArgumentError, "data.argument-mistyped", near="accuracy"):
+        geofit.PointSet(XYZ).with_(acuracy=0.1)
+
+
+@pytest.mark.parametrize("x", ["a", [1, "b"], Odd(), {"x": 1}, [[1], [1, 2]]])
+def test_places_are_numbers(fit, x):
+    for call in (
+        lambda: fit.elevation(x, 1),
+        lambda: fit.surface.elevation(1, x),
+        lambda: fit.distance(x),
+        lambda: fit.project(x),
+        lambda: foot_points(Sphere(np.zeros(3), 1.0), x),
+    ):
+        with pytest.raises(geofit.GeofitError, match=r"number|coordinates"):
+            call()
+
+
+def test_elements_are_looked_at_where_several_are_taken(fit):
+    with pytest.raises(ArgumentError, match=r"names\[1\] is 3; needed: a text"):
+        geofit.fit_site(geofit.Site("s", {"a": geofit.PointSet(XYZ)}), ["a", 3])
+    with pytest.raises(ArgumentError, match="names is of type str; needed: several values"):
+        geofit.fit_site(geofit.Site("s", {"a": geofit.PointSet(XYZ)}), "a")
+    with pytest.raises(ArgumentError, match="lower is of type None; a fit is needed"):
+        geofit.compare_horizons(fit, None)
+
+
+def test_what_goes_wrong_inside_is_not_blamed_on_the_arguments():
+    """A bare error with arguments that fit stays what it is."""
+
+    class Broken(Sphere):
+        def value(self, xyz):
+            raise ZeroDivisionError("inside")
+
+    with pytest.raises(ZeroDivisionError, match="inside"):
+        foot_points(Broken(np.zeros(3), 1.0), np.ones((2, 3)))

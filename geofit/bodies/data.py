@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.columns import column, places, refuse_far
 from geofit.data.errors import FitError, PointsError
+from geofit.data.given import arguments_checked, keywords_known
 from geofit.data.messages import Message, Untranslated, message, plural_message
 
 __all__ = ["BodyData", "BodyIssue", "Prepared", "prepare"]
@@ -33,6 +34,7 @@ class BodyIssue:
     used: bool = True
 
 
+@keywords_known
 @dataclass(frozen=True, eq=False)
 class BodyData:
     """What is known of a body, in metres and map coordinates.
@@ -91,7 +93,7 @@ class BodyData:
         for name, given in (("contacts", contacts), ("inside", inside), ("outside", outside)):
             self._set(name, _finite_places(name, given))
         n = len(self.contacts)
-        known = np.full((n, 3), np.nan) if normals is None else np.array(normals, float)
+        known = np.full((n, 3), np.nan) if normals is None else _copied(normals)
         if known.size == 0:
             known = known.reshape(0, 3)
         if known.shape != (n, 3):
@@ -124,6 +126,7 @@ class BodyData:
         names = set(self.hole.tolist()) | set(self.inside_hole.tolist()) | set(self.outside_hole.tolist())
         return tuple(sorted(names - {""}))
 
+    @arguments_checked
     def select(self, contacts: NDArray[np.bool_], inside: NDArray[np.bool_], outside: NDArray[np.bool_]) -> BodyData:
         """Return a part of the data."""
         return BodyData(
@@ -132,9 +135,15 @@ class BodyData:
             self.inside_length[inside], self.outside_length[outside], self.issues,
         )  # fmt: skip
 
+    @arguments_checked
     def without(self, hole: str) -> BodyData:
         """Return the data without those of one hole."""
         return self.select(self.hole != hole, self.inside_hole != hole, self.outside_hole != hole)
+
+
+@arguments_checked
+def _copied(normals: ArrayLike) -> Floats:
+    return np.array(normals, float)
 
 
 def _finite_places(name: str, given: ArrayLike) -> Floats:

@@ -19,6 +19,7 @@ from geofit.bodies.rbf import Saddle
 from geofit.bodies.region import Region, hole_spacing, region_of
 from geofit.bodies.settings import BodySettings
 from geofit.data.errors import FitError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ ROUNDS = 5
 NODES = 48
 
 
+@arguments_checked
 def fit_body(
     data: BodyData | Any,
     settings: BodySettings | None = None,

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import keywords_known
 from geofit.data.messages import Message, Untranslated, message
 from geofit.data.numbers import is_finite, shown
 from geofit.data.setting_texts import BODY_SETTINGS
@@ -18,6 +19,7 @@ __all__ = ["BodySettings"]
 Corner = tuple[float, float, float]
 
 
+@keywords_known
 @dataclass(frozen=True, kw_only=True)
 class BodySettings:
     """How a body is fitted and judged.

@@ -175,5 +175,7 @@ def _write(
         Path(temporary).write_text(with_attributes(text, [attributes]), "ascii", newline="\n")
         os.chmod(temporary, 0o644)
         os.replace(temporary, target)
+    except OSError as error:
+        raise cannot_write(error, target) from None
     finally:
         Path(temporary).unlink(missing_ok=True)

@@ -23,6 +23,7 @@ from geofit.caves.survey import Survey
 from geofit.caves.sweep_loops import SweepCells, ranges
 from geofit.caves.sweeps import Sweeps
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 
 if TYPE_CHECKING:
@@ -153,6 +154,7 @@ class PassageBody(OwnField):
         return float(np.median(np.minimum(walls[..., 0] + walls[..., 1], walls[..., 2] + walls[..., 3]))) / 8
 
 
+@arguments_checked
 def centreline_body(
     survey: Survey | AdjustedSurvey,
     *,

@@ -1,11 +1,28 @@
-"""Arguments of another type than the function takes: told at its door, not by an attribute that is missing inside."""
+"""Arguments that a function cannot take: refused at its door, not by an attribute that is missing inside.
+
+:func:`arguments_checked` reads what a function takes from its signature, so a public function says it once.
+"""
 
 from __future__ import annotations
 
-from geofit.data.errors import ArgumentError
-from geofit.data.messages import Message, message
+import ast
+import os
+from collections.abc import Callable, Collection, Iterator, Mapping
+from difflib import get_close_matches
+from functools import cache, wraps
+from inspect import Parameter, Signature, signature
+from numbers import Integral, Real
+from typing import Any, Literal, NamedTuple, TypeVar, cast, get_origin
 
-__all__ = ["FIT", "POINTS", "SETTINGS", "SITE", "SURFACES", "require_kind"]
+import numpy as np
+
+from geofit.data.errors import ArgumentError, GeofitError
+from geofit.data.messages import Message, Untranslated, message
+from geofit.data.numbers import shown
+
+__all__ = ["FIT", "POINTS", "SETTINGS", "SITE", "SURFACES", "arguments_checked", "keywords_known", "require_kind"]
+
+T = TypeVar("T", bound=Callable[..., Any])
 
 POINTS = message("data.point-set-needed", "a PointSet is needed: PointSet(xyz).")
 SETTINGS = message("data.fit-settings-needed", "settings are needed: FitSettings(epsilon=0.5).")
@@ -15,6 +32,178 @@ FIT = message(
 )
 SITE = message("data.site-needed", "a site is needed: read_site(path) gives one.")
 SURFACES = message("data.surfaces-needed", "a surface is needed, or several by name: {names}.", names="{'T1': surface}")
+
+
+def _given_by(kind: str, call: str) -> Message:
+    return message(
+        "data.object-needed", "a {kind} is needed: {call}.", kind=Untranslated(kind), call=Untranslated(call)
+    )
+
+
+#: What is needed where a class is, and how to get it.
+_CLASSES = {
+    "PointSet": POINTS,
+    "FitSettings": SETTINGS,
+    "HorizonFit": FIT,
+    "Site": SITE,
+    "HasElevation": SURFACES,
+    "Surface": SURFACES,
+    **{
+        kind: _given_by(kind, call)
+        for kind, call in (
+            ("BodyData", "BodyData(contacts, normals=normals)"),
+            ("BodySettings", "BodySettings(epsilon=0.5)"),
+            ("Boreholes", "geofit.io.read_boreholes(collar, survey, intervals)"),
+            ("Field", "geofit.implicit.Sphere(centre, radius)"),
+            ("Ground", "geofit.io.read_ground(path)"),
+            ("Lattice", "geofit.implicit.Lattice.around(lower, upper, cells=60)"),
+            ("MaximalBalls", "maximal_balls(volume)"),
+            ("Mesh", "surface.triangulate(0.05)"),
+            ("MorphBody", "morph(a, b)(0.5)"),
+            ("PoreNetwork", "pore_network(volume)"),
+            ("RockVolume", "RockVolume(array, pore=0, voxel=1e-6)"),
+            ("Slices", "read_volume(path)"),
+            ("Source", "geofit.io.Source(path=path)"),
+            ("Survey", "geofit.io.read_survex(path)"),
+            ("TriangleMesh", "geofit.implicit.isosurface(field, lattice)"),
+            ("Uncertainty", "examine(surface).uncertainty"),
+        )
+    },
+}  # fmt: skip
+
+
+#: What tells an object whose class may have any name. A surface may take the place of a fit: a function that needs the
+#: points of a fit says so.
+_MEMBERS = {
+    "HasElevation": ("elevation",),
+    "HorizonFit": ("elevation", "project", "triangulate"),
+    "Surface": ("elevation", "project", "triangulate"),
+    "Field": ("value", "gradient"),
+    "Slices": ("slab", "shape"),
+}
+
+
+class _Kind(NamedTuple):
+    """Values that an argument takes; ``inner``: what each of several must be."""
+
+    fits: Callable[[Any], bool]
+    needed: Message
+    inner: tuple[_Kind, ...] = ()
+    number: bool = False
+
+
+class _Fault(NamedTuple):
+    argument: str
+    value: Any
+    needed: Message
+
+
+def _is_numeric(value: Any) -> bool:
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError):  # rows of several lengths, an object without numbers
+        return False
+    return not array.size or array.dtype.kind in "biufc" or (array.dtype.kind == "O" and all(map(_is_real, array.flat)))
+
+
+def _is_real(value: Any) -> bool:
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
+    return isinstance(value, Real) and value == value
+
+
+def _is_several(value: Any) -> bool:
+    return isinstance(value, Collection) and not isinstance(value, str | bytes | Mapping)
+
+
+_ANY = _Kind(lambda _: True, message("data.anything-needed", "anything"))
+_NONE = _Kind(lambda value: value is None, message("data.none-needed", "no value (None)"))
+_TEXT = _Kind(lambda value: isinstance(value, str), message("data.text-needed", "a text (str)"))
+_NUMBERS = _Kind(
+    _is_numeric, message("data.numbers-needed", "numbers, such as a list or an array of them"), number=True
+)
+_WHOLE = _Kind(
+    lambda value: isinstance(value, Integral), message("data.whole-number-needed", "a whole number (int)"), number=True
+)
+_CALL = _Kind(callable, message("data.function-needed", "a function"))
+_SEVERAL = _Kind(_is_several, message("data.several-needed", "several values, such as a list of them"))
+_BY_NAME = _Kind(lambda value: isinstance(value, Mapping), message("data.by-name-needed", "values by name (a dict)"))
+_PATH = _Kind(lambda value: isinstance(value, os.PathLike), message("data.path-needed", "a path (pathlib.Path)"))
+_WRITTEN = {
+    "Any": _ANY,
+    "None": _NONE,
+    "str": _TEXT,
+    "bool": _Kind(
+        lambda value: isinstance(value, bool | np.bool_), message("data.truth-needed", "true or false (bool)")
+    ),
+    "int": _WHOLE,
+    "float": _Kind(_is_real, message("data.number-needed", "a number (float)"), number=True),
+    "ArrayLike": _NUMBERS,
+    "NDArray": _NUMBERS,
+    "Floats": _NUMBERS,
+    "Progress": _CALL,
+    "Callable": _CALL,
+    "Path": _PATH,
+    "PathLike": _PATH,
+    "Literal": _TEXT,
+    "Sequence": _SEVERAL,
+    "Collection": _SEVERAL,
+    "tuple": _SEVERAL,
+    "Mapping": _BY_NAME,
+}
+
+
+def arguments_checked(what: T) -> T:
+    """Refuse arguments that the signature of a function, or of a class, does not allow.
+
+    Annotations are read as they are written: nothing is imported for them. Objects, texts and names are looked at
+    before the function starts; numbers only where it ends in an error that is not one of geofit's, because its own
+    checks of numbers say more.
+
+    Raises
+    ------
+    ArgumentError
+        By what is returned: if an argument is unknown, missing, or of another type.
+    """
+    function: Callable[..., Any] = what.__init__ if isinstance(what, type) else what  # type: ignore[misc]
+    known = signature(function)
+
+    @cache
+    def kinds() -> tuple[dict[str, tuple[_Kind, ...]], ...]:
+        every = {one.name: tuple(_kinds(one.annotation, function)) for one in known.parameters.values()}
+        return {name: found for name, found in every.items() if not any(kind.number for kind in found)}, every
+
+    @wraps(function)
+    def call(*args: Any, **kwargs: Any) -> Any:
+        given = _bound(function, known, args, kwargs)
+        before, every = kinds()
+        _compare(known, given, before)
+        try:
+            return function(*args, **kwargs)
+        except GeofitError:
+            raise
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
+            _compare(known, given, every)
+            raise
+
+    if isinstance(what, type):
+        what.__init__ = call  # type: ignore[misc]
+        return what
+    return cast(T, call)
+
+
+def keywords_known(cls: T) -> T:
+    """Refuse arguments that a class does not have, or lacks; it checks their values itself."""
+    made: Callable[..., None] = cls.__init__
+    known = signature(made)
+
+    @wraps(made)
+    def call(*args: Any, **kwargs: Any) -> None:
+        _bound(made, known, args, kwargs)
+        made(*args, **kwargs)
+
+    cls.__init__ = call  # type: ignore[method-assign]
+    return cls
 
 
 def require_kind(argument: str, value: object, kinds: type | tuple[type, ...], needed: Message) -> None:
@@ -36,13 +225,132 @@ def require_kind(argument: str, value: object, kinds: type | tuple[type, ...], n
     ArgumentError
         If ``value`` is of another type.
     """
-    if not isinstance(value, kinds):
-        raise ArgumentError(
-            message(
-                "data.argument-type-unfit",
-                "{argument} is of type {given}; {needed}",
-                argument=argument,
-                given="None" if value is None else type(value).__name__,
-                needed=needed,
-            )
+    _refuse(None if isinstance(value, kinds) else _Fault(argument, value, needed))
+
+
+def _refuse(fault: _Fault | None) -> None:
+    if fault is None:
+        return
+    argument, value, needed = fault
+    if isinstance(value, Real) and not isinstance(value, bool):
+        text = message(
+            "data.argument-unfit",
+            "{argument} is {value}; {needed}",
+            argument=argument,
+            value=shown(value),
+            needed=needed,
         )
+    else:
+        text = message(
+            "data.argument-type-unfit",
+            "{argument} is of type {given}; {needed}",
+            argument=argument,
+            given="None" if value is None else type(value).__name__,
+            needed=needed,
+        )
+    raise ArgumentError(text)
+
+
+def _compare(known: Signature, given: Mapping[str, Any], kinds: Mapping[str, tuple[_Kind, ...]]) -> None:
+    for name in kinds.keys() & given.keys():
+        many = known.parameters[name].kind is Parameter.VAR_POSITIONAL
+        for one in given[name] if many else (given[name],):
+            _refuse(_fault(name, one, kinds[name]))
+
+
+def _bound(function: Callable[..., Any], known: Signature, args: Any, kwargs: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return arguments by their names."""
+    try:
+        return known.bind(*args, **kwargs).arguments
+    except TypeError as error:
+        names = [one.name for one in known.parameters.values() if one.name != "self" and one.kind != one.VAR_KEYWORD]
+        own = function.__qualname__.removesuffix(".__init__")
+        call = {"function": Untranslated(own), "names": Untranslated(", ".join(names))}
+        wrong = next((name for name in kwargs if name not in known.parameters), "")
+        near = get_close_matches(wrong, names, 1) if wrong else []
+        if near:
+            text = message(
+                "data.argument-mistyped",
+                "{function} has no argument '{name}'. Did you mean '{near}'? Its arguments are: {names}.",
+                name=Untranslated(wrong),
+                near=Untranslated(near[0]),
+                **call,
+            )
+        elif wrong:
+            text = message(
+                "data.argument-unknown",
+                "{function} has no argument '{name}'. Its arguments are: {names}.",
+                name=Untranslated(wrong),
+                **call,
+            )
+        else:
+            text = message(
+                "data.arguments-unfit",
+                "{function} cannot be called like this: {error}. Its arguments are: {names}.",
+                error=str(error),
+                **call,
+            )
+        raise ArgumentError(text) from None
+
+
+def _kinds(annotation: object, function: Callable[..., Any]) -> Iterator[_Kind]:
+    """Return what an annotation, as it is written, allows."""
+    if not isinstance(annotation, str):
+        yield _ANY
+        return
+    yield from _parsed(ast.parse(annotation, mode="eval").body, function.__globals__)
+
+
+def _parsed(node: ast.expr, names: Mapping[str, Any]) -> Iterator[_Kind]:
+    match node:
+        case ast.BinOp(left=left, right=right):
+            yield from _parsed(left, names)
+            yield from _parsed(right, names)
+        case ast.Constant(value=None):
+            yield _NONE
+        case ast.Subscript(value=ast.Name(id=("Sequence" | "Collection" | "Mapping") as name), slice=inner):
+            last = inner.elts[-1] if isinstance(inner, ast.Tuple) else inner
+            yield _WRITTEN[name]._replace(inner=tuple(_parsed(last, names)))
+        case ast.Subscript(value=ast.Name(id=name)) | ast.Name(id=name):
+            yield _named(name, names.get(name))
+        case _:
+            yield _ANY
+
+
+def _named(name: str, value: Any) -> _Kind:
+    """Return the kind of a name in an annotation: its value, if the module has it at run time."""
+    if name in _WRITTEN:
+        return _WRITTEN[name]
+    if get_origin(value) is Literal:
+        return _TEXT
+    if value is not None and not isinstance(value, type):
+        return _ANY  # another name for several types
+    needed = _CLASSES.get(
+        name, message("data.class-needed", "an object of the class {kind} is needed.", kind=Untranslated(name))
+    )
+    if name in _MEMBERS:
+        return _Kind(lambda given: all(hasattr(type(given), one) for one in _MEMBERS[name]), needed)
+    # A class that is imported for type checkers only is known by its name.
+    return _Kind(lambda given: name in [one.__name__ for one in type(given).__mro__], needed)
+
+
+def _fault(argument: str, value: Any, kinds: tuple[_Kind, ...]) -> _Fault | None:
+    """Return what is wrong with a value that must be of one of some kinds."""
+    inner: _Fault | None = None
+    for kind in kinds:
+        if not kind.fits(value):
+            continue
+        faults = (_fault(name, one, kind.inner) for name, one in _parts(argument, value)) if kind.inner else ()
+        inner = next((fault for fault in faults if fault is not None), None)
+        if inner is None:
+            return None
+    if inner is not None:
+        return inner
+    classes = [kind.needed for kind in kinds if kind.needed.is_sentence]
+    some = message("data.kinds-needed", "needed: {kinds}.", kinds=tuple(kind.needed for kind in kinds))
+    return _Fault(argument, value, classes[0] if classes else some)
+
+
+def _parts(argument: str, value: Any) -> Iterator[tuple[str, Any]]:
+    keyed = value.items() if isinstance(value, Mapping) else enumerate(value)
+    return ((f"{argument}[{key!r}]", one) for key, one in keyed)

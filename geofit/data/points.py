@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.columns import column, finite_places, wrong_shape
 from geofit.data.errors import PointsError
+from geofit.data.given import arguments_checked, keywords_known
 from geofit.data.labels import Labels
 from geofit.data.messages import Message, Untranslated, message
 
@@ -57,6 +58,7 @@ def look_like_degrees(xyz: ArrayLike) -> bool:
 _WORDS = ("kind", "hole", "section", "file")
 
 
+@keywords_known
 @dataclass(frozen=True, eq=False, init=False)
 class PointSet:
     """Points of one horizon, each traceable to a row of a file (paper, sec. 2).
@@ -177,6 +179,7 @@ class PointSet:
         return PointSet(**{**self._columns(), **changes})
 
     @classmethod
+    @arguments_checked
     def concatenate(cls, sets: Sequence[PointSet]) -> PointSet:
         """Join sets of points, in order."""
         if not sets:
@@ -185,6 +188,7 @@ class PointSet:
         arrays = {name: np.concatenate([getattr(s, name) for s in sets]) for name in ("xyz", "accuracy", "row")}
         return cls(**columns, **arrays)
 
+    @arguments_checked
     def describe(self, index: int) -> Message:
         """Name one point as a person would look it up: hole or section, file and row."""
         word = {label: self.labels[label].word(index) for label in _WORDS}

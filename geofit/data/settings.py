@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import keywords_known
 from geofit.data.messages import Message, Untranslated, message
 from geofit.data.numbers import is_finite, shown
 from geofit.data.setting_texts import SETTINGS, SettingText
@@ -16,6 +17,7 @@ from geofit.data.setting_texts import SETTINGS, SettingText
 __all__ = ["FitSettings", "named"]
 
 
+@keywords_known
 @dataclass(frozen=True, kw_only=True)
 class FitSettings:
     """How a horizon is fitted and judged.

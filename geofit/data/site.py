@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.given import arguments_checked, keywords_known
 from geofit.data.logs import LoggedHoles
 from geofit.data.messages import EMPTY, Message
 from geofit.data.picture import card, plan_svg
@@ -79,6 +80,7 @@ class Ground:
     y: Floats
     z: Floats
 
+    @arguments_checked
     def elevation(self, x: Floats, y: Floats) -> Floats:
         """Height at map coordinates by bilinear interpolation, nan outside; arrays broadcast."""
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
@@ -112,6 +114,7 @@ class Orientations:
         return len(self.xyz)
 
 
+@keywords_known
 @dataclass(frozen=True, eq=False)
 class Site:
     """Everything that was read of one site.

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from geofit.data.given import keywords_known
+
 __all__ = ["Revision", "TitleBlock"]
 
 
+@keywords_known
 @dataclass(frozen=True)
 class Revision:
     """An issue of a document.
@@ -29,6 +32,7 @@ class Revision:
     author: str = ""
 
 
+@keywords_known
 @dataclass(frozen=True)
 class TitleBlock:
     """What stands on the cover of a report; an empty entry is printed as a line to fill in, or left out.

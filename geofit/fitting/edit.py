@@ -18,6 +18,7 @@ from scipy.sparse import csr_array, diags_array, vstack
 
 from geofit.data.columns import LARGEST
 from geofit.data.errors import ExactnessError, FitError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite, shown
 from geofit.fitting.assemble import NetPart, divide
@@ -41,6 +42,7 @@ TANGENT_ROWS = 2
 BEYOND = 2
 
 
+@arguments_checked
 def adjust(
     surface: HorizonFit, patch: str, i: int, j: int, dz: float, aside: Sequence[float] = (0.0, 0.0, 0.0)
 ) -> HorizonFit:
@@ -85,6 +87,7 @@ def adjust(
     return _changed(surface, model.moved(index, by / share), move_note(patch, i, j, dz, aside))
 
 
+@arguments_checked
 def move_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> HorizonFit:
     """Pull the surface to a point, by the smallest change of the control points that act there.
 
@@ -189,6 +192,7 @@ def _moved_beside(row: csr_array, misfit: Floats, fixed: csr_array, acting: NDAr
         return None
 
 
+@arguments_checked
 def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> HorizonFit:
     """Change the weight of a control point of the periphery: above 1 draws the surface towards it.
 

@@ -9,7 +9,7 @@ import numpy as np
 from geofit.checks.check import check
 from geofit.checks.shape import RANGE_SHARE
 from geofit.data.accuracy import Accuracy, Check
-from geofit.data.given import POINTS, SURFACES, require_kind
+from geofit.data.given import POINTS, SURFACES, arguments_checked, require_kind
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
@@ -26,6 +26,7 @@ __all__ = ["judge"]
 NAMED = 20
 
 
+@arguments_checked
 def judge(
     surface: PatchSurface | MeshSurface, points: PointSet, settings: FitSettings | None = None, name: str = ""
 ) -> HorizonFit:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.data.given import SETTINGS, require_kind
+from geofit.data.given import SETTINGS, arguments_checked, require_kind
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress
 from geofit.data.settings import FitSettings
@@ -31,6 +31,7 @@ __all__ = ["fit_horizon", "posed"]
 Floats = NDArray[np.float64]
 
 
+@arguments_checked
 def fit_horizon(
     points: PointSet,
     settings: FitSettings | None = None,

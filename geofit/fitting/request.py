@@ -12,7 +12,7 @@ from geofit.data.messages import message, plural_message
 from geofit.data.points import PointSet, look_like_degrees
 from geofit.geometry.area import fault_of_area
 
-__all__ = ["require"]
+__all__ = ["corners_of", "require"]
 
 Floats = NDArray[np.float64]
 
@@ -64,6 +64,32 @@ def require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
                 y=points.xyz[0, 1],
             )
         )
+    corners = corners_of(boundary)
+    if corners is None:
+        return None
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    # Column by column: short rows take ten times as long.
+    plan = points.xyz[:, :2].T
+    off = np.max([np.maximum(a - x, x - b) for x, a, b in zip(plan, low, high, strict=True)], axis=0).min()
+    if off > max(np.hypot(*(high - low)), np.hypot(*(np.ptp(x) for x in plan))):
+        text = message(
+            "fitting.points-off-study-area",
+            "All points lie off the study area, the nearest by {off:.6g} m. Check the coordinates of both, and the "
+            "order of easting and northing.",
+            off=float(off),
+        )
+        raise PointsError(text)
+    return corners
+
+
+def corners_of(boundary: ArrayLike | None) -> Floats | None:
+    """Return the corners of a study area as (k, 2) array, None without one.
+
+    Raises
+    ------
+    PointsError
+        If there are fewer than three finite corners, or they enclose no area.
+    """
     if boundary is None:
         return None
     try:
@@ -92,16 +118,4 @@ def require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
                 fault=fault,
             )
         )
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    # Column by column: short rows take ten times as long.
-    plan = points.xyz[:, :2].T
-    off = np.max([np.maximum(a - x, x - b) for x, a, b in zip(plan, low, high, strict=True)], axis=0).min()
-    if off > max(np.hypot(*(high - low)), np.hypot(*(np.ptp(x) for x in plan))):
-        text = message(
-            "fitting.points-off-study-area",
-            "All points lie off the study area, the nearest by {off:.6g} m. Check the coordinates of both, and the "
-            "order of easting and northing.",
-            off=float(off),
-        )
-        raise PointsError(text)
     return corners

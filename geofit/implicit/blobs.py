@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.field import Box, points_of
 from geofit.implicit.kernels import Potential, potential
@@ -180,6 +181,7 @@ class Metaballs:
         return (self.threshold - highest) / self.slope_scale, (self.threshold - lowest) / self.slope_scale
 
 
+@arguments_checked
 def spherical_metaballs(
     centres: ArrayLike,
     radii: ArrayLike,

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.geometry.chains import chains_of
 from geofit.implicit.field import Field
@@ -35,6 +36,7 @@ class Contour:
     closed: bool
 
 
+@arguments_checked
 def field_contours(
     field: Field, origin: ArrayLike, along: ArrayLike, up: ArrayLike, *, size: tuple[float, float], spacing: float
 ) -> tuple[Contour, ...]:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.field import Box, Field, range_in
 
@@ -203,21 +204,25 @@ def _blend(radius: float) -> float:
     return float(radius)
 
 
+@arguments_checked
 def complement(field: Field) -> Field:
     """Return what is outside: -f."""
     return field.field if isinstance(field, _Complement) else _Complement(field)
 
 
+@arguments_checked
 def union(*fields: Field) -> Field:
     """Return what is in any of the bodies: min(f, g, ...)."""
     return _Union(_some(fields))
 
 
+@arguments_checked
 def intersection(*fields: Field) -> Field:
     """Return what is in all bodies: max(f, g, ...)."""
     return _Within(complement(_Union(tuple(map(complement, _some(fields))))), _common_box(fields))
 
 
+@arguments_checked
 def difference(field: Field, *others: Field) -> Field:
     """Return what is in the first body and in no other: max(f, -g, ...)."""
     return intersection(field, *map(complement, others))
@@ -237,27 +242,32 @@ def sharp_union(field: Field) -> tuple[tuple[Field, ...], bool] | None:
     return ((base,), True) if isinstance(field, _Complement) else None
 
 
+@arguments_checked
 def smooth_union(first: Field, second: Field, radius: float) -> Field:
     """Return the union with its crease filled where |f - g| < radius (metres), C2."""
     return _SmoothUnion(first, second, _blend(radius))
 
 
+@arguments_checked
 def smooth_intersection(first: Field, second: Field, radius: float) -> Field:
     """Return the intersection with its edge rounded where |f - g| < radius (metres), C2."""
     rounded = complement(_SmoothUnion(complement(first), complement(second), _blend(radius)))
     return _Within(rounded, _common_box((first, second)))
 
 
+@arguments_checked
 def smooth_difference(first: Field, second: Field, radius: float) -> Field:
     """Return the first body without the second, its edge rounded, C2."""
     return smooth_intersection(first, complement(second), radius)
 
 
+@arguments_checked
 def r_union(first: Field, second: Field) -> Field:
     """Return the union by Rvachev's f + g - sqrt(f^2 + g^2): smooth off the common curve of both surfaces."""
     return _RUnion(first, second)
 
 
+@arguments_checked
 def r_intersection(first: Field, second: Field) -> Field:
     """Return the intersection by Rvachev's f + g + sqrt(f^2 + g^2)."""
     return _Within(complement(_RUnion(complement(first), complement(second))), _common_box((first, second)))

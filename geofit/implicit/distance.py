@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.field import Box
 
@@ -60,6 +61,7 @@ def _directions(offset: Floats) -> Floats:
     return np.asarray(offset / np.where(length > 0, length, 1.0))
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class Sphere(_Distance):
     """d(x, centre) - radius, in metres."""
@@ -85,6 +87,7 @@ class Sphere(_Distance):
         return self.centre - self.radius, self.centre + self.radius
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class Cylinder(_Distance):
     """d(x, line) - radius, in metres: a circular cylinder without ends.
@@ -127,6 +130,7 @@ class Cylinder(_Distance):
         return self.point - half, self.point + half
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class Torus(_Distance):
     """d(x, circle) - radius, in metres.
@@ -178,6 +182,7 @@ class Torus(_Distance):
         return self.centre - half, self.centre + half
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class CurveTube(_Distance):
     """d(x, curve) - radius about the C2 cubic spline through points: a generalised cylinder with round ends.
@@ -248,6 +253,7 @@ class CurveTube(_Distance):
         return tree.data.min(axis=0) - slack, tree.data.max(axis=0) + slack
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class RoundCones(_Distance):
     """Union of the round cones along a centre line: drifts, shafts, cave passages with a radius at each point.

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 
 __all__ = [
@@ -194,6 +195,7 @@ class _Moved:
         return self.field.lipschitz
 
 
+@arguments_checked
 def moved(field: Field, rotation: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)), shift: ArrayLike = (0, 0, 0)) -> Field:
     """Return a field turned about the origin, then shifted.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.data.given import arguments_checked
 from geofit.implicit.field import Field, points_of
 from geofit.implicit.mesh import TriangleMesh
 
@@ -40,6 +41,7 @@ class FootPoints:
     converged: NDArray[np.bool_]
 
 
+@arguments_checked
 def foot_points(
     field: Field,
     xyz: ArrayLike,
@@ -103,6 +105,7 @@ def foot_points(
     return FootPoints(x, sign * np.linalg.norm(points - x, axis=1), converged)
 
 
+@arguments_checked
 def signed_distance(field: Field, xyz: ArrayLike, mesh: TriangleMesh | None = None) -> Floats:
     """Return signed orthogonal distances of points from the surface of a field, metres, positive outside.
 
@@ -124,6 +127,7 @@ def signed_distance(field: Field, xyz: ArrayLike, mesh: TriangleMesh | None = No
     return foot_points(field, points, start=start).distance
 
 
+@arguments_checked
 def project_along_gradient(field: Field, xyz: ArrayLike, *, reach: float = np.inf, steps: int = 6) -> Floats:
     """Return points moved onto the surface by Newton steps along the gradient, none longer than ``reach`` metres.
 

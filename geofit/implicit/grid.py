@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.field import Box, Field
 from geofit.implicit.lattice import Lattice, sample
@@ -113,6 +114,7 @@ def _bezier(c: Floats, axis: int) -> tuple[Floats, Floats, Floats]:
     return a, b, d
 
 
+@arguments_checked
 def spline_grid(values: ArrayLike, lattice: Lattice) -> SplineGrid:
     """Return the tricubic B-spline through samples.
 
@@ -167,6 +169,7 @@ def spline_grid(values: ArrayLike, lattice: Lattice) -> SplineGrid:
     return SplineGrid(lattice, coefficients)
 
 
+@arguments_checked
 def spline_of_field(field: Field, lattice: Lattice) -> SplineGrid:
     """Return the tricubic B-spline through the values of a field at the nodes of a lattice."""
     return spline_grid(sample(field, lattice), lattice)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import FitError, SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.clean import collapse_slivers
 from geofit.implicit.field import Field, range_in
@@ -35,6 +36,7 @@ SLIVER = 1e-7
 SIDES = ("-x", "+x", "-y", "+y", "-z", "+z")
 
 
+@arguments_checked
 def isosurface(field: Field, lattice: Lattice, *, capped: bool = False, slivers: bool = False) -> TriangleMesh:
     """Return the surface on which a field is zero.
 
@@ -81,6 +83,7 @@ def isosurface(field: Field, lattice: Lattice, *, capped: bool = False, slivers:
     return collapse_slivers(mesh, SLIVER * lattice.spacing**2, lattice.spacing)
 
 
+@arguments_checked
 def isosurface_of_samples(values: NDArray[np.floating], lattice: Lattice, *, capped: bool = False) -> TriangleMesh:
     """Return the surface on which stored samples are zero, linear along the edges of the lattice.
 

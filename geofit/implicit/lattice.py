@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.field import Box, Field, box_of
 
@@ -69,6 +70,7 @@ class Lattice:
         object.__setattr__(self, "shape", tuple(int(n) for n in self.shape))
 
     @classmethod
+    @arguments_checked
     def around(cls, lower: ArrayLike, upper: ArrayLike, *, cells: int) -> Lattice:
         """Return cubic cells that cover a box, ``cells`` of them along its longest side, centred on the box.
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import FitError, SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.ball_energy import ELLIPSOID, SPHERE, Balls, Energy, halves_of
 from geofit.implicit.blobs import Metaballs
@@ -56,6 +57,7 @@ class BallFit:
     dropped: int
 
 
+@arguments_checked
 def fit_metaballs(
     xyz: ArrayLike,
     normals: ArrayLike,

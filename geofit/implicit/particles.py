@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.field import Field, normals
 from geofit.implicit.foot import project_along_gradient
@@ -20,6 +21,7 @@ ROUNDS = 40
 REACH, MOVE = 1.6, 0.25
 
 
+@arguments_checked
 def even_samples(field: Field, mesh: TriangleMesh, count: int, *, seed: int = 0) -> tuple[Floats, Floats]:
     """Return points spread evenly over the surface of a field, and the normals there.
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import FitError, SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.field import Box, box_of, points_of
 
@@ -41,6 +42,7 @@ KINDS = {
 }
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class Plane:
     """The half-space behind a plane: f = (x - point) . normal, a distance.
@@ -200,6 +202,7 @@ def quadric_from_coefficients(coefficients: ArrayLike, region: Box | None = None
     return Quadric(np.array([[a, b, c, d], [b, e, f, g], [c, f, h, i], [d, g, i, j]]), region)
 
 
+@arguments_checked
 def ellipsoid(centre: ArrayLike, semi_axes: ArrayLike, rotation: ArrayLike | None = None) -> Quadric:
     """Return an ellipsoid whose field has the slope 1 at the ends of its shortest axis.
 
@@ -233,6 +236,7 @@ def ellipsoid(centre: ArrayLike, semi_axes: ArrayLike, rotation: ArrayLike | Non
     return Quadric(np.block([[a, b[:, None]], [b[None], np.array([[c]])]]) * half.min() / 2)
 
 
+@arguments_checked
 def fit_quadric(xyz: ArrayLike) -> Quadric:
     """Return the quadric nearest to points, by Taubin's approximation f / |grad f| of the distance.
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import FitError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.field import Field
 from geofit.implicit.foot import foot_points
@@ -17,6 +18,7 @@ __all__ = ["distance_field", "distance_samples"]
 Floats = NDArray[np.float64]
 
 
+@arguments_checked
 def distance_field(field: Field, lattice: Lattice, *, band: float = 10.0) -> SplineGrid:
     """Return the signed distance from the surface of a field as tricubic spline on a lattice.
 
@@ -38,6 +40,7 @@ def distance_field(field: Field, lattice: Lattice, *, band: float = 10.0) -> Spl
     return spline_grid(distance_samples(field, lattice, band=band), lattice)
 
 
+@arguments_checked
 def distance_samples(field: Field, lattice: Lattice, *, band: float = 10.0) -> Floats:
     """Return the samples of :func:`distance_field`, shape ``lattice.shape``, metres."""
     from scipy.ndimage import distance_transform_edt

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.field import Field, normals, points_of
 from geofit.implicit.roots import roots_between
@@ -48,6 +49,7 @@ class Crossing:
     entering: bool
 
 
+@arguments_checked
 def first_hits(
     field: Field, origins: ArrayLike, directions: ArrayLike, *, length: float, resolution: float = RESOLUTION
 ) -> Hits:
@@ -84,6 +86,7 @@ def first_hits(
     return Hits(depth, xyz, normal, entering)
 
 
+@arguments_checked
 def hole_crossings(
     field: Field, collars: ArrayLike, directions: ArrayLike, *, length: float, resolution: float = RESOLUTION
 ) -> tuple[tuple[Crossing, ...], ...]:

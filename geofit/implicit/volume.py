@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.field import Field
 from geofit.implicit.foot import project_along_gradient
@@ -125,6 +126,7 @@ def _cut(f: Floats, xyz: Floats) -> tuple[float, float]:
     return volume, area + triangle(a, b, c) + triangle(a, c, d)
 
 
+@arguments_checked
 def extrapolated_extent(field: Field, lattice: Lattice, *, capped: bool = False) -> Extent:
     """Return volume and area from the meshes of a lattice and of every second node of it.
 
@@ -156,6 +158,7 @@ def extrapolated_extent(field: Field, lattice: Lattice, *, capped: bool = False)
     )
 
 
+@arguments_checked
 def curved_extent(field: Field, mesh: TriangleMesh) -> Extent:
     """Return volume and area of a body by quadratic triangles: the middles of the edges are moved onto the surface.
 

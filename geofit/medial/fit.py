@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.medial.agreement import Agreement, agreement
@@ -111,6 +112,7 @@ class FittedMetaballs(MetaballBody):
         return self.figures.hausdorff
 
 
+@arguments_checked
 def metaballs(
     volume: RockVolume,
     *,

@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.field import Box
 from geofit.morphing.errors import MorphError
+from geofit.surfaces.protocol import HasElevation
 
 if TYPE_CHECKING:
     from scipy.interpolate import RectBivariateSpline
@@ -89,8 +91,14 @@ class BetweenSurfaces:
         return np.array(values), np.array(gradients)
 
 
+@arguments_checked
 def between(
-    upper: Any, lower: Any, *, area: ArrayLike | None = None, spacing: float | None = None, name: str = ""
+    upper: HasElevation | float,
+    lower: HasElevation | float,
+    *,
+    area: ArrayLike | None = None,
+    spacing: float | None = None,
+    name: str = "",
 ) -> BetweenSurfaces:
     """Return the body between two surfaces: a horizon, ground or survey above a common base.
 

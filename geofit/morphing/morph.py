@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.implicit.grid import spline_grid
@@ -38,6 +39,7 @@ FAR = 20.0
 EPS = 0.25
 
 
+@arguments_checked
 def morph(
     a: Any,
     b: Any,

@@ -14,6 +14,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.pores import slabs
@@ -75,6 +76,7 @@ class MaximalBalls:
         return out
 
 
+@arguments_checked
 def maximal_balls(
     volume: Slices,
     *,

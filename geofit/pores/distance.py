@@ -7,11 +7,13 @@ built for one run of pore voxels at a time, and rock costs no more than the look
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.pores.threads import in_parts
 from geofit.pores.volume import VolumeError
@@ -25,7 +27,8 @@ _LEAST = 500_000
 Border = Literal["closed", "open"] | tuple[Literal["closed", "open"], ...]
 
 
-def border_walls(border: Border) -> tuple[bool, bool, bool]:
+@arguments_checked
+def border_walls(border: str | Sequence[str]) -> tuple[bool, bool, bool]:
     """Return for each axis whether its two faces are walls.
 
     Raises

@@ -7,6 +7,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.pores import slabs
@@ -31,6 +32,7 @@ DEFAULT_TAU = 0.85
 _PORE, _VOXEL, _WHOLE, _SLAB = 32, 0.2, 4, 6
 
 
+@arguments_checked
 def pore_network(
     volume: Slices,
     balls: MaximalBalls | None = None,

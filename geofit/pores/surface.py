@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.bodies.implicit_body import OwnField
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.implicit.field import Box, Field
@@ -255,6 +256,7 @@ class PoreSurface(OwnField):
         return out
 
 
+@arguments_checked
 def pore_surface(
     volume: RockVolume,
     network: PoreNetwork | None = None,

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import GeofitError
+from geofit.data.given import arguments_checked, keywords_known
 from geofit.data.messages import message
 
 __all__ = ["RockVolume", "VolumeError", "check_array", "label_shares", "pore_mask", "voxel_edges"]
@@ -21,6 +22,7 @@ class VolumeError(GeofitError, ValueError):
     """An array that is not a usable rock volume, or a step that this volume does not allow."""
 
 
+@keywords_known
 @dataclass(frozen=True, eq=False, init=False)
 class RockVolume:
     """Pore space of a rock sample on a grid of voxels.
@@ -79,6 +81,7 @@ class RockVolume:
         n0, n1, n2 = self.pore.shape
         return n0, n1, n2
 
+    @arguments_checked
     def slab(self, first: int, end: int) -> NDArray[np.bool_]:
         """Return the slices ``first`` ... ``end - 1``, True in pores."""
         return self.pore[first:end]
@@ -209,6 +212,7 @@ def _listed(shares: dict[Any, float]) -> str:
     return shown if len(shares) <= _SHOWN else f"{shown}, ..."
 
 
+@arguments_checked
 def voxel_edges(voxel: float | Collection[float] | None) -> tuple[float, float, float]:
     """Return the edges of a voxel, or raise if they are missing or not lengths."""
     if voxel is None:

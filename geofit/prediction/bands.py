@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_limits
 
 from geofit.data.columns import measurable_places
 from geofit.data.errors import FitError, SettingsError
-from geofit.data.given import require_kind
+from geofit.data.given import arguments_checked, require_kind
 from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
 from geofit.data.prediction import PredictionResult, Uncertainty
@@ -138,6 +138,7 @@ def uncertainty_on(grid: Grid, error_model: PredictionError) -> Uncertainty:
     )  # fmt: skip
 
 
+@arguments_checked
 def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike, of: Of = "surface") -> Floats:
     """Return the prediction standard deviation of a surface at any place.
 
@@ -200,6 +201,7 @@ def band_directions(surface: HorizonFit, xyz: Floats) -> Floats:
     return np.asarray(normals @ axes)
 
 
+@arguments_checked
 def band(
     surface: HorizonFit, found: PredictionResult | Uncertainty, share: float = 0.9, of: Of = "contact"
 ) -> tuple[HorizonFit, HorizonFit]:

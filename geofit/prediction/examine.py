@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from geofit.data.given import FIT, require_kind
+from geofit.data.given import FIT, arguments_checked, require_kind
 from geofit.data.guard import guarded
 from geofit.data.messages import Message, message
 from geofit.data.prediction import LeftOut, Outlier, PredictionResult, SourceOffset, Suggestion, Uncertainty
@@ -47,6 +47,7 @@ MOST = 4_000
 ROUNDS = 2
 
 
+@arguments_checked
 def examine(
     surface: HorizonFit,
     progress: Progress | None = None,

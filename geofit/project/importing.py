@@ -125,7 +125,7 @@ def import_files(
     plan = ImportPlan()
     for i, file in enumerate(files):
         tell(progress, "inspect files", 0.3 * i / len(files))
-        look_at(Path(file), folder, mappings, crs, unit, plan)
+        look_at(Path(file), folder, mappings, crs, plan, unit)
     while True:
         complete(plan)
         horizons = _horizons(plan, site_file, mapping_file, crs, base, top, language)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Literal, get_args
 
 from geofit.data.errors import InputError, SettingsError
-from geofit.data.given import FIT, require_kind
+from geofit.data.given import FIT, arguments_checked, require_kind
 from geofit.data.languages import language as language_of
 from geofit.data.messages import Untranslated, message
 from geofit.data.site import Site
@@ -22,6 +22,7 @@ from geofit.site.fit_site import SiteFit
 __all__ = ["write_report"]
 
 
+@arguments_checked
 def write_report(
     fits: HorizonFit | SiteFit | Mapping[str, HorizonFit] | Sequence[HorizonFit],
     folder: str | PathLike[str],

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import MissingDependencyError, SettingsError
 from geofit.data.files import replacing
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.mesh import TriangleMesh
 from geofit.report.scene import require_rendering
@@ -33,6 +34,7 @@ BETWEEN, SURVEY, GHOST = "#8fa7b3", "#b4895a", "#6b6b6b"
 VIEWPOINT = (-0.55, -0.8, 0.45)
 
 
+@arguments_checked
 def write_film(bodies: Sequence[MorphBody], path: str | PathLike[str]) -> Path:
     """Write the frames of a metamorphosis as a film: surveys and what is interpolated in different colours.
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
 from geofit.geometry.mesh import Mesh
@@ -39,6 +40,7 @@ def interval_for(low: float, high: float) -> float:
     return next(step * power for step in (1, 2, 5, 10) if span / (step * power) <= 25)
 
 
+@arguments_checked
 def contours(
     surface: Surface,
     interval: float | None = None,

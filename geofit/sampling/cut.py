@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.columns import LARGEST
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.geometry.mesh import Mesh
 from geofit.geometry.projection import project
@@ -65,6 +66,7 @@ def section_line(line: ArrayLike) -> Floats:
     return np.asarray(corners[apart])
 
 
+@arguments_checked
 def cut_section(
     surface: Surface, line: ArrayLike, *, tolerance: float = 0.05, mesh: Mesh | None = None
 ) -> list[CutLine]:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import FitError, InputError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import Message, message, plural_message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
@@ -22,6 +23,7 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Orientations, Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.pipeline import fit_horizon
+from geofit.fitting.request import corners_of
 from geofit.site.dips import dips_within
 from geofit.site.fault import BEYOND_TRACE, Fault, Height, longer, longer_side
 from geofit.site.height_field import HeightField
@@ -109,6 +111,7 @@ def fit_faulted(site: Site, name: str, progress: Progress | None = None) -> Bloc
     )
 
 
+@arguments_checked
 def fit_blocks(
     points: PointSet,
     faults: Sequence[HorizonFit | ArrayLike],
@@ -170,8 +173,8 @@ def area_of(points: PointSet, boundary: ArrayLike | None) -> Polygon:
     """Return the study area in map coordinates; without one, the rectangle of the points."""
     import shapely
 
-    if boundary is not None:
-        return shapely.Polygon(np.asarray(boundary, float))
+    if (corners := corners_of(boundary)) is not None:
+        return shapely.Polygon(corners)
     (x0, y0), (x1, y1) = points.xyz[:, :2].min(axis=0), points.xyz[:, :2].max(axis=0)
     return shapely.Polygon([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
 

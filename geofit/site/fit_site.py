@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from geofit.data.errors import FitError, PointsError, SettingsError
-from geofit.data.given import SITE, require_kind
+from geofit.data.given import SITE, arguments_checked, require_kind
 from geofit.data.guard import guarded
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
@@ -57,6 +57,7 @@ class SiteFit:
         return f"<SiteFit: {', '.join([*parts, *(f'{name} not fitted' for name in self.failures)])}>"
 
 
+@arguments_checked
 def fit_site(
     site: Site,
     names: Sequence[str] = (),

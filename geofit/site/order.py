@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.accuracy import Check
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
@@ -94,6 +95,7 @@ class Order:
         return Check("order", False, max(crossing.depth for crossing in below), 0.0, "m", text)
 
 
+@arguments_checked
 def thickness(upper: HorizonFit, lower: HorizonFit, x: ArrayLike, y: ArrayLike) -> Floats:
     """Return the vertical thickness between two horizons.
 
@@ -140,6 +142,7 @@ def orders(
     return tuple(_compare(upper, lower, ground) for upper, lower in combinations(reliefs, 2))
 
 
+@arguments_checked
 def compare_horizons(upper: HorizonFit, lower: HorizonFit, ground: Ground | None = None) -> Order:
     """Measure the thickness between two horizons, and find where they cross.
 

@@ -19,7 +19,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from threadpoolctl import threadpool_limits
 
 from geofit.data.errors import SettingsError
-from geofit.data.given import FIT, require_kind
+from geofit.data.given import FIT, arguments_checked, require_kind
 from geofit.data.messages import EMPTY, Message, message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
@@ -87,6 +87,7 @@ class Separation:
     contradictions: tuple[Contradiction, ...]
 
 
+@arguments_checked
 def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str], minimum: float = 0.0) -> Separation:
     """Push horizons of a sequence apart until each is at least ``minimum`` metres above the next.
 

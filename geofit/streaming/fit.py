@@ -19,6 +19,7 @@ from threadpoolctl import threadpool_limits
 
 from geofit.data.columns import LARGEST
 from geofit.data.errors import FitError, PointsError
+from geofit.data.given import arguments_checked
 from geofit.data.long_arrays import LongArray, Rows, blocks, covariance, everywhere, without
 from geofit.data.messages import message
 from geofit.data.points import PointSet
@@ -29,6 +30,7 @@ from geofit.fitting.assemble import patches_of
 from geofit.fitting.field import FieldChoice, plane_trend
 from geofit.fitting.net import cap_for, smoothed
 from geofit.fitting.parametrize import STEEP, direction_of, plan_box
+from geofit.fitting.request import corners_of
 from geofit.fitting.resolution import choose_field
 from geofit.geometry.frame import Frame, map_frame, plane_axes
 from geofit.streaming.coincident import coincident
@@ -71,6 +73,7 @@ class CloudFit:
         return f"<CloudFit {self.surface.name}: {self.n} points, noise {self.field.noise:.3g} m>"
 
 
+@arguments_checked
 def fit_cloud(
     xyz: ArrayLike | LongArray,
     settings: FitSettings | None = None,
@@ -119,7 +122,7 @@ def fit_cloud(
     """
     settings = settings or FitSettings()
     rows: Rows = xyz if isinstance(xyz, LongArray) else np.asarray(xyz, np.float64)
-    corners = None if boundary is None else np.asarray(boundary, np.float64)
+    corners = corners_of(boundary)
     with threadpool_limits(limits=1), tempfile.TemporaryDirectory(dir=folder, prefix="cloud-") as temporary:
         return _fit_cloud(rows, settings, corners, progress, name, Path(temporary))
 

@@ -17,13 +17,20 @@ if TYPE_CHECKING:
     from geofit.geometry.trim_loops import Loops
     from geofit.splines.patch import Patch
 
-__all__ = ["FittedSurface", "Frame", "Surface"]
+__all__ = ["FittedSurface", "Frame", "HasElevation", "Surface"]
 
 Floats = NDArray[np.float64]
 
 #: In which frame a surface is a height field: over the map, over its best plane, or in none ("sections": a folded
 #: surface through section curves; "": unknown, as for surfaces that were read from a file).
 Frame = str
+
+
+class HasElevation(Protocol):
+    """A surface, a horizon or the ground as a height over the map."""
+
+    def elevation(self, x: ArrayLike, y: ArrayLike) -> Floats:
+        """Height at map coordinates, nan outside; arrays broadcast."""
 
 
 class Surface(Protocol):

@@ -8,6 +8,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from geofit.data.files import file_stems, replacing
+from geofit.data.given import arguments_checked
 from geofit.data.lengths import LengthUnit
 from geofit.geometry.mesh import Mesh
 from geofit.sampling.contours import ContourLine
@@ -48,6 +49,7 @@ def write_mesh_dxf(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> Non
                 space.add_3dface([*corners, corners[2]], dxfattribs=attributes)
 
 
+@arguments_checked
 def write_section_dxf(cuts: Mapping[str, Sequence[CutLine]], path: str | PathLike[str], *, drawn: bool = True) -> None:
     """Write a section as DXF, one layer a horizon.
 

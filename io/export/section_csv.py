@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from os import PathLike
 
 from geofit.data.files import replacing, spreadsheet_cell
+from geofit.data.given import arguments_checked
 from geofit.sampling.cut import CutLine
 
 __all__ = ["HEADER", "write_section_csv"]
@@ -14,6 +15,7 @@ __all__ = ["HEADER", "write_section_csv"]
 HEADER = ("horizon", "line", "distance", "elevation", "x", "y")
 
 
+@arguments_checked
 def write_section_csv(cuts: Mapping[str, Sequence[CutLine]], path: str | PathLike[str]) -> None:
     """Write a section as a table: one row a vertex, metres to 1e-6.
 

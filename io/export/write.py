@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, runtime_checkable
 
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.files import file_stems
-from geofit.data.given import SURFACES, require_kind
+from geofit.data.given import SURFACES, arguments_checked, require_kind
 from geofit.data.messages import Message, message
 from geofit.sampling.contours import contours
 from geofit.sampling.grids import deviation_grid, elevation_grid, thickness_grid
@@ -91,6 +91,7 @@ class _Options:
     site: str
 
 
+@arguments_checked
 def write_surface(
     surfaces: Surface | Surfaces,
     path: str | PathLike[str],

@@ -139,6 +139,29 @@ def test_declination_turns_the_azimuths(write):
     np.testing.assert_allclose(magnetic.holes[1].xyz[-1], [75, 0, 103 - 50 * np.sin(np.pi / 3)], atol=1e-9)
 
 
+@pytest.mark.parametrize(("mark", "full"), [("gon", 400.0), ("rad", 2 * np.pi)])
+def test_angles_in_other_units_are_converted(write, mark, full):
+    collar = write(COLLARS, "collar.csv")
+    rows = [("A", 0.3, 0.2), ("B", 0.99, 0.15)]
+    degrees = "hole,depth,azimuth,dip\n" + "".join(f"{h},0,{a * 360},{d * 360}\n" for h, a, d in rows)
+    other = f"hole,depth,azimuth [{mark}],dip ({mark})\n"
+    other += "".join(f"{h},0,{a * full:.12g},{d * full:.12g}\n" for h, a, d in rows)
+    one, two = (
+        read_boreholes(collar, write(text, f"{k}.csv"), dip="down-positive") for k, text in enumerate((degrees, other))
+    )
+    for a, b in zip(one.holes, two.holes, strict=True):
+        np.testing.assert_allclose(a.xyz, b.xyz, atol=1e-8)
+    assert [issue.reason.code for issue in two.issues].count("io.angles-converted") == 2
+
+
+def test_azimuths_that_may_be_gon_are_warned_of(write):
+    collar = write(COLLARS, "collar.csv")
+    text = "hole,depth,azimuth,dip\nA,0,390,60\nA,5,399,60\nB,0,{last},60\n"
+    for last, count in ((120, 1), (512, 0)):
+        found = read_boreholes(collar, write(text.format(last=last), "survey.csv"), dip="down-positive")
+        assert [issue.reason.code for issue in found.issues].count("io.azimuths-like-gon") == count
+
+
 def test_tangential_is_asked_for(write):
     collar = write(COLLARS, "collar.csv")
     survey = write("hole,depth,azimuth,dip\nA,0,0,90\nA,20,90,60\n", "survey.csv")
