@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -45,3 +47,38 @@ def test_torn_files_are_found(kills, tmp_path):
     assert sorted(line.split(":")[0] for line in kills.torn(tmp_path)) == [
         "a.step", "b.html", "c.json", "d.csv", "e.png", "f.step",
     ]  # fmt: skip
+
+
+CREW = """
+import os, time
+from geofit.project.side_by_side import crew
+
+if __name__ == "__main__":
+    with crew(2) as hands:
+        print(*(pid for _, pid in hands.do([os.getpid, os.getpid], None)), flush=True)
+        time.sleep(600)
+"""
+
+
+@forks
+def test_workers_end_with_the_process_that_was_killed(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(CREW, encoding="utf-8")
+    with subprocess.Popen([sys.executable, str(script)], stdout=subprocess.PIPE, text=True) as parent:
+        workers = [int(word) for word in parent.stdout.readline().split()]
+        assert workers
+        parent.send_signal(signal.SIGKILL)
+    end = time.monotonic() + 30
+    while (left := [pid for pid in workers if runs(pid)]) and time.monotonic() < end:
+        time.sleep(0.1)
+    assert not left
+
+
+def runs(pid: int) -> bool:
+    """Whether a process is there and not only waits to be reaped."""
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    status = Path(f"/proc/{pid}/stat")
+    return not status.exists() or status.read_text().rpartition(")")[2].split()[0] != "Z"

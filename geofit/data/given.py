@@ -232,7 +232,7 @@ def _refuse(fault: _Fault | None) -> None:
     if fault is None:
         return
     argument, value, needed = fault
-    if isinstance(value, Real) and not isinstance(value, bool):
+    if isinstance(value, Real):
         text = message(
             "data.argument-unfit",
             "{argument} is {value}; {needed}",

@@ -6,6 +6,7 @@ import multiprocessing
 import os
 import signal
 import sys
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -144,9 +145,25 @@ def _begin() -> None:
     """Import what the work needs, leave Ctrl-C to the process that gives it, and one core to each process."""
     from threadpoolctl import threadpool_limits
 
+    _end_with_parent()
     import_module(PRELOAD)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threadpool_limits(limits=1)
+
+
+def _end_with_parent() -> None:
+    """End this process as soon as the one that gives it work has gone.
+
+    It holds both ends of its pipes, and would wait for ever for a task of a process that was killed.
+    """
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+
+    def watch() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def _ready() -> None:
