@@ -323,14 +323,14 @@ def _named(name: str, value: Any) -> _Kind:
         return _WRITTEN[name]
     if get_origin(value) is Literal:
         return _TEXT
-    if value is not None and not isinstance(value, type):
-        return _ANY  # another name for several types
+    # Another name for several types, or one that is imported for type checkers only and may be that.
+    if not isinstance(value, type) and (value is not None or name not in _CLASSES):
+        return _ANY
     needed = _CLASSES.get(
         name, message("data.class-needed", "an object of the class {kind} is needed.", kind=Untranslated(name))
     )
     if name in _MEMBERS:
         return _Kind(lambda given: all(hasattr(type(given), one) for one in _MEMBERS[name]), needed)
-    # A class that is imported for type checkers only is known by its name.
     return _Kind(lambda given: name in [one.__name__ for one in type(given).__mro__], needed)
 
 

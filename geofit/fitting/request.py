@@ -12,7 +12,7 @@ from geofit.data.messages import message, plural_message
 from geofit.data.points import PointSet, look_like_degrees
 from geofit.geometry.area import fault_of_area
 
-__all__ = ["corners_of", "require"]
+__all__ = ["require", "study_area_of"]
 
 Floats = NDArray[np.float64]
 
@@ -64,7 +64,7 @@ def require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
                 y=points.xyz[0, 1],
             )
         )
-    corners = corners_of(boundary)
+    corners = study_area_of(boundary)
     if corners is None:
         return None
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -82,7 +82,7 @@ def require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
     return corners
 
 
-def corners_of(boundary: ArrayLike | None) -> Floats | None:
+def study_area_of(boundary: ArrayLike | None) -> Floats | None:
     """Return the corners of a study area as (k, 2) array, None without one.
 
     Raises

@@ -23,7 +23,7 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Orientations, Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.pipeline import fit_horizon
-from geofit.fitting.request import corners_of
+from geofit.fitting.request import study_area_of
 from geofit.site.dips import dips_within
 from geofit.site.fault import BEYOND_TRACE, Fault, Height, longer, longer_side
 from geofit.site.height_field import HeightField
@@ -173,7 +173,7 @@ def area_of(points: PointSet, boundary: ArrayLike | None) -> Polygon:
     """Return the study area in map coordinates; without one, the rectangle of the points."""
     import shapely
 
-    if (corners := corners_of(boundary)) is not None:
+    if (corners := study_area_of(boundary)) is not None:
         return shapely.Polygon(corners)
     (x0, y0), (x1, y1) = points.xyz[:, :2].min(axis=0), points.xyz[:, :2].max(axis=0)
     return shapely.Polygon([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])

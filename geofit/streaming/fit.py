@@ -30,7 +30,7 @@ from geofit.fitting.assemble import patches_of
 from geofit.fitting.field import FieldChoice, plane_trend
 from geofit.fitting.net import cap_for, smoothed
 from geofit.fitting.parametrize import STEEP, direction_of, plan_box
-from geofit.fitting.request import corners_of
+from geofit.fitting.request import study_area_of
 from geofit.fitting.resolution import choose_field
 from geofit.geometry.frame import Frame, map_frame, plane_axes
 from geofit.streaming.coincident import coincident
@@ -122,7 +122,7 @@ def fit_cloud(
     """
     settings = settings or FitSettings()
     rows: Rows = xyz if isinstance(xyz, LongArray) else np.asarray(xyz, np.float64)
-    corners = corners_of(boundary)
+    corners = study_area_of(boundary)
     with threadpool_limits(limits=1), tempfile.TemporaryDirectory(dir=folder, prefix="cloud-") as temporary:
         return _fit_cloud(rows, settings, corners, progress, name, Path(temporary))
 
