@@ -232,7 +232,8 @@ class Likelihood:
         if self._solved is None or not math.isfinite(variance):
             return None
         (held, free, drifted), prior = self._solved.columns, self.slope.precision(hold)
-        covariance = np.linalg.inv(self.drift.T @ held - held.T @ drifted + prior)
+        moment = self.drift.T @ held - held.T @ drifted + prior
+        covariance = np.asarray(np.linalg.inv(moment), np.float64)
         slopes = covariance @ (held.T @ free + (prior @ self.slope.aim)[:, None])
         planes = self.drift - drifted
         # K acts on x and Y as A' W A does on what they leave to the noise.

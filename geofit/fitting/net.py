@@ -23,7 +23,6 @@ from geofit.fitting.approximate import approximate, fixed_by_core, solved_beside
 from geofit.fitting.assemble import multiply_knots
 from geofit.fitting.density import CLOUD
 from geofit.fitting.field import (
-    ENOUGH,
     FieldChoice,
     Smoothed,
     precision_band,
@@ -31,6 +30,7 @@ from geofit.fitting.field import (
 )
 from geofit.fitting.likelihood import plane_coefficients
 from geofit.fitting.resolution import Choice, choose_field
+from geofit.fitting.smoothness import ENOUGH
 from geofit.geometry.cells import tabulate
 from geofit.splines.patch import Patch
 from geofit.splines.tensor import TensorSpace
