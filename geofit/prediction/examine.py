@@ -77,7 +77,8 @@ def examine(
         30 points by true refits: :mod:`geofit.prediction.small_sets`) beside the
         thin-plate spline and kriging on the same folds; standard deviation on a grid, held to those errors; the next
         holes; outliers; systematic offsets between kinds of points. Of a folded surface its inner sections are left
-        out, by true refits; no other method has such a surface, and neither outliers nor offsets are looked for.
+        out, by fits of the others with the covariance of all points; no other method has such a surface, and neither
+        outliers nor offsets are looked for.
 
     Raises
     ------
