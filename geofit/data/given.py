@@ -47,7 +47,7 @@ _CLASSES = {
     "HorizonFit": FIT,
     "Site": SITE,
     "HasElevation": SURFACES,
-    "Surface": SURFACES,
+    **dict.fromkeys(("MeshSurface", "PatchSurface", "Surface"), SURFACES),
     **{
         kind: _given_by(kind, call)
         for kind, call in (
@@ -72,12 +72,12 @@ _CLASSES = {
 }  # fmt: skip
 
 
-#: What tells an object whose class may have any name. A surface may take the place of a fit: a function that needs the
-#: points of a fit says so.
+_SURFACE = ("elevation", "project", "triangulate")
+#: What tells an object whose class may have any name. A surface may take the place of a fit, and a fit of a surface:
+#: a function that needs the points of a fit says so.
 _MEMBERS = {
     "HasElevation": ("elevation",),
-    "HorizonFit": ("elevation", "project", "triangulate"),
-    "Surface": ("elevation", "project", "triangulate"),
+    **dict.fromkeys(("HorizonFit", "MeshSurface", "PatchSurface", "Surface"), _SURFACE),
     "Field": ("value", "gradient"),
     "Slices": ("slab", "shape"),
 }
