@@ -45,6 +45,7 @@ _CLASSES = {
     "PointSet": POINTS,
     "FitSettings": SETTINGS,
     "HorizonFit": FIT,
+    "Slices": _given_by("RockVolume", "read_volume(path)"),
     "Site": SITE,
     "HasElevation": SURFACES,
     **dict.fromkeys(("MeshSurface", "PatchSurface", "Surface"), SURFACES),
@@ -62,7 +63,6 @@ _CLASSES = {
             ("MorphBody", "morph(a, b)(0.5)"),
             ("PoreNetwork", "pore_network(volume)"),
             ("RockVolume", "RockVolume(array, pore=0, voxel=1e-6)"),
-            ("Slices", "read_volume(path)"),
             ("Source", "geofit.io.Source(path=path)"),
             ("Survey", "geofit.io.read_survex(path)"),
             ("TriangleMesh", "geofit.implicit.isosurface(field, lattice)"),
@@ -79,7 +79,7 @@ _MEMBERS = {
     "HasElevation": ("elevation",),
     **dict.fromkeys(("HorizonFit", "MeshSurface", "PatchSurface", "Surface"), _SURFACE),
     "Field": ("value", "gradient"),
-    "Slices": ("slab", "shape"),
+    "Slices": ("slab",),
 }
 
 
