@@ -1,7 +1,7 @@
-"""The likeliest field of each smoothness, the others of its parameters not being known.
+"""The likeliest field of each smoothness.
 
-The likelihood may have a maximum where relief is noise and another one where it is not, so the search begins at every
-start that is better than its neighbours. A smoother field begins at a rougher one, of the same variance.
+The likelihood may have one maximum where relief passes for noise and another one where it does not, so the search
+begins at every start that is better than its neighbours. A smoother field begins at a rougher one of the same variance.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Floats = NDArray[np.float64]
 ENOUGH = 16
 #: Starts of the search: kappa, and the frequency of the waves of which half counts as noise, per unit.
 KAPPAS, WAVES = (0.04, 0.2, 1.0), (0.7, 2.0, 6.0)
-#: The smoothness to try beside one that is not far behind, and how many times shorter its range may be.
+#: The smoothness to try beside one that is not far behind, and how many times shorter its range is at the start.
 SMOOTHER, SHORTER = {3: 6}, (1.25, 2.5)
 #: How much likelier it must be, -2 log, where a rougher one is likelier than the one that it is tried beside.
 PLAINLY = 10.0
