@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geofit.data.errors import GeofitError
+from geofit.data.errors import ArgumentError, GeofitError
 from geofit.pores import RockVolume, VolumeError, maximal_balls, pore_network
 
 
@@ -21,7 +21,7 @@ def test_the_voxel_size_is_never_guessed():
 
 @pytest.mark.parametrize("voxel", [0, -1e-6, np.nan, (1e-6, 1e-6), "x"])
 def test_a_voxel_size_must_be_a_length(voxel):
-    with pytest.raises((VolumeError, ValueError)):
+    with pytest.raises((VolumeError, ArgumentError)):
         RockVolume(np.zeros((2, 2, 2)), pore=0, voxel=voxel)
 
 
