@@ -70,7 +70,7 @@ class Desktop(QObject):
 
         Returns the exit code.
         """
-        sys.excepthook = self._hear_mistake
+        sys.excepthook = self.hear_mistake
         threading.excepthook = self._hear_thread
         # Python handles Ctrl+C only while it runs; the garbage collector's timer wakes it twice a second.
         signal.signal(signal.SIGINT, lambda *_: self.window.close())
@@ -147,9 +147,10 @@ class Desktop(QObject):
 
     def _hear_thread(self, args: threading.ExceptHookArgs) -> None:
         if args.exc_value is not None:
-            self._hear_mistake(args.exc_type, args.exc_value, args.exc_traceback)
+            self.hear_mistake(args.exc_type, args.exc_value, args.exc_traceback)
 
-    def _hear_mistake(self, kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+    def hear_mistake(self, kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+        """Log an error that nobody foresaw, and tell of it once."""
         if isinstance(error, KeyboardInterrupt) or not isinstance(error, Exception):
             self.window.leave_without_asking()
             return

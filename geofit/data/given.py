@@ -171,7 +171,7 @@ def arguments_checked(what: T) -> T:
     @cache
     def kinds() -> tuple[dict[str, tuple[_Kind, ...]], ...]:
         every = {one.name: tuple(_kinds(one.annotation, function)) for one in known.parameters.values()}
-        return {name: found for name, found in every.items() if not any(kind.number for kind in found)}, every
+        return {name: found for name, found in every.items() if not any(map(_of_numbers, found))}, every
 
     @wraps(function)
     def call(*args: Any, **kwargs: Any) -> Any:
@@ -190,6 +190,10 @@ def arguments_checked(what: T) -> T:
         what.__init__ = call  # type: ignore[misc]
         return what
     return cast(T, call)
+
+
+def _of_numbers(kind: _Kind) -> bool:
+    return kind.number or any(map(_of_numbers, kind.inner))
 
 
 def keywords_known(cls: T) -> T:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from geofit.fitting.likelihood import UNSOLVABLE, Likelihood, Optimum
 from geofit.fitting.optimum import BEHIND, EVERY, maximize
 
-__all__ = ["ENOUGH", "as_smooth", "search"]
+__all__ = ["ENOUGH", "as_smooth", "search", "starts"]
 
 Floats = NDArray[np.float64]
 
@@ -39,7 +39,7 @@ def search(likelihood: Callable[[int], Likelihood], degree: int, n: int, rho: fl
     for alpha in alphas:
         judge, best = likelihood(alpha), math.inf if not found else found[0].value
         optima: list[Optimum] = []
-        for start in _starts(judge, rho):
+        for start in starts(judge, rho):
             optima.append(maximize(judge, [start], free, min([best, *(one.value for one in optima)])))
         found.append(min(optima, key=lambda one: one.value))
     best = min(one.value for one in found)
@@ -53,7 +53,7 @@ def search(likelihood: Callable[[int], Likelihood], degree: int, n: int, rho: fl
     return found
 
 
-def _starts(judge: Likelihood, rho: float | None) -> Sequence[Floats]:
+def starts(judge: Likelihood, rho: float | None) -> Sequence[Floats]:
     """Return the starts that are better than those around them, (4,) parameters each, those far behind left out."""
     waves = WAVES if rho is None else WAVES[:1]
     places = [

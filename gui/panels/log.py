@@ -88,7 +88,7 @@ class LogPanel(QWidget):
         self.text.setPlaceholderText(self.tr("No messages yet: what geofit does is listed here."))
         copy, clear = QPushButton(self.tr("Copy all")), QPushButton(self.tr("Clear"))
         copy.clicked.connect(lambda: QGuiApplication.clipboard().setText(self.text.toPlainText()))
-        clear.clicked.connect(self._clear)
+        clear.clicked.connect(self.clear)
         buttons = QHBoxLayout()
         buttons.addStretch(1)
         buttons.addWidget(copy)
@@ -136,7 +136,8 @@ class LogPanel(QWidget):
         line = f"{at}  {word}{translated(entry.text) if isinstance(entry.text, Message) else entry.text}"
         return f"{line}\n{entry.trace}" if entry.trace else line
 
-    def _clear(self) -> None:
+    def clear(self) -> None:
+        """Forget all entries."""
         self._entries.clear()
         self.text.clear()
 

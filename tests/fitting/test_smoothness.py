@@ -31,9 +31,9 @@ class Valleys:
 
 
 def test_the_search_begins_in_every_valley_that_is_not_far_behind():
-    begun = smoothness._starts(Valleys(), 1e-3)
+    begun = smoothness.starts(Valleys(), 1e-3)
     assert [round(float(np.exp(at[0])), 2) for at in begun] == [0.04, 1.0]
-    assert len(smoothness._starts(Valleys(deeper=1e3), 1e-3)) == 1
+    assert len(smoothness.starts(Valleys(deeper=1e3), 1e-3)) == 1
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -20,7 +20,7 @@ def hear(desktop):
     try:
         broken()
     except IndexError as error:
-        desktop._hear_mistake(type(error), error, error.__traceback__)
+        desktop.hear_mistake(type(error), error, error.__traceback__)
 
 
 @pytest.fixture
@@ -70,6 +70,6 @@ def test_the_log_goes_on_in_another_language(app, log):
     app.desktop.change_language("zh_CN")
     assert "警告: before" in log()
     assert 'raise IndexError("no such row")' in log()
-    app.window.panels.log._clear()
+    app.window.panels.log.clear()
     app.desktop.change_language("en")
     assert "before" not in log()
