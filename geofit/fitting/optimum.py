@@ -20,18 +20,19 @@ Floats = NDArray[np.float64]
 
 #: All parameters: the longest range, rho, and both parts of the stretch.
 EVERY = (0, 1, 2, 3)
-#: How far behind a rival, -2 log of the likelihood, a search is given up, after how many steps at the earliest, and
-#: unless so many steps like the next one would catch up.
+#: A search is given up this far behind a rival, -2 log of the likelihood, but not before so many steps, nor if so many
+#: steps like the next one would catch up.
 BEHIND, PATIENCE, PACE = 60.0, 2, 2.0
 #: The gain, -2 log of the likelihood, that another step must promise; steps at most, and their longest.
 SETTLED, STEPS, LONGEST = 0.1, 20, np.array([1.0, 4.0, 0.25, 0.25])
-#: Added to the information, for log kappa once for each unit of nu: it leaves out what the planes say, and a step must
-#: stay within sight where the points say little.
+#: Added to the information, for log kappa once for each unit of nu. The information leaves out what the planes say, and
+#: without it no step is bounded where the points say little.
 MORE, MORE_OF_KAPPA = 0.1, 0.5
 #: Rounds over the parameters for a step at most, and the change of one that ends them.
 SWEEPS, STILL = 50, 1e-4
-#: First step of log rho on another space.
-ASIDE = 0.75
+#: First step of log rho on another space, and the gain below which its search ends. A coarser limit would leave the
+#: noise to chance where the likelihood is flat, and with it the weight of measured dips.
+ASIDE, SURE = 0.75, 0.02
 
 
 def maximize(likelihood: Likelihood, starts: Sequence[Floats], free: Sequence[int], rival: float = math.inf) -> Optimum:
@@ -91,11 +92,11 @@ def maximize_over_noise(likelihood: Likelihood, start: Floats) -> Optimum:
         sides.reverse()
     # Downhill by ever longer steps while they gain, so that the middle is the least of three.
     behind, ahead = sides[1], sides[0]
-    while value(ahead) < value(middle) - SETTLED and low < ahead < high:
+    while value(ahead) < value(middle) - SURE and low < ahead < high:
         behind, middle, ahead = middle, ahead, min(max(ahead + 2 * (ahead - middle), low), high)
     for _ in range(STEPS):
         vertex, gain = _vertex((behind, middle, ahead), (value(behind), value(middle), value(ahead)))
-        if gain < SETTLED:
+        if gain < SURE:
             break
         if value(vertex) < value(middle):
             behind, middle, ahead = middle, vertex, behind if (vertex - middle) * (behind - middle) > 0 else ahead

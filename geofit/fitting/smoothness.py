@@ -24,9 +24,9 @@ Floats = NDArray[np.float64]
 ENOUGH = 16
 #: Starts of the search: kappa, and the frequency of the waves of which half counts as noise, per unit.
 KAPPAS, WAVES = (0.04, 0.2, 1.0), (0.7, 2.0, 6.0)
-#: The smoothness to try beside one that is not far behind, and how many times shorter its range is at the start.
+#: The smoother field to try beside a rough one that is not far behind, and how many times shorter its first ranges are.
 SMOOTHER, SHORTER = {3: 6}, (1.25, 2.5)
-#: How much likelier it must be, -2 log, where a rougher one is likelier than the one that it is tried beside.
+#: If a rougher field is the likeliest, the smoother one must beat it by this much, -2 log of the likelihood.
 PLAINLY = 10.0
 
 
