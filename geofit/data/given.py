@@ -49,6 +49,11 @@ _CLASSES = {
     "Site": SITE,
     "HasElevation": SURFACES,
     **dict.fromkeys(("MeshSurface", "PatchSurface", "Surface"), SURFACES),
+    "Uncertainty": message(
+        "data.uncertainty-needed",
+        "the uncertainty of an examination is needed: examine(surface).uncertainty; where that is None, its notes say "
+        "why.",
+    ),
     **{
         kind: _given_by(kind, call)
         for kind, call in (
@@ -66,7 +71,6 @@ _CLASSES = {
             ("Source", "geofit.io.Source(path=path)"),
             ("Survey", "geofit.io.read_survex(path)"),
             ("TriangleMesh", "geofit.implicit.isosurface(field, lattice)"),
-            ("Uncertainty", "examine(surface).uncertainty"),
         )
     },
 }  # fmt: skip
@@ -163,7 +167,7 @@ def arguments_checked(what: T) -> T:
     Raises
     ------
     ArgumentError
-        By what is returned: if an argument is unknown, missing, or of another type.
+        By the returned function, if an argument is unknown, missing, or of another type.
     """
     function: Callable[..., Any] = what.__init__ if isinstance(what, type) else what  # type: ignore[misc]
     known = signature(function)

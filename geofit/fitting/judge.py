@@ -9,7 +9,7 @@ import numpy as np
 from geofit.checks.check import check
 from geofit.checks.shape import RANGE_SHARE
 from geofit.data.accuracy import Accuracy, Check
-from geofit.data.given import POINTS, SURFACES, arguments_checked, require_kind
+from geofit.data.given import SURFACES, arguments_checked, require_kind
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
@@ -54,7 +54,6 @@ def judge(
     edge, counts in sigma with this distance, and is listed in ``accuracy.notes``.
     """
     require_kind("surface", surface, (PatchSurface, MeshSurface, HorizonFit), SURFACES)
-    require_kind("points", points, PointSet, POINTS)
     judged = HorizonFit(surface, points, settings or FitSettings(), name or surface.name)
     found = surface.project(points.xyz)
     if found.beyond is None:

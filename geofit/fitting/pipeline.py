@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.data.given import SETTINGS, arguments_checked, require_kind
+from geofit.data.given import arguments_checked
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress
 from geofit.data.settings import FitSettings
@@ -80,7 +80,6 @@ def fit_horizon(
     ``fit.write_step(path)``.
     """
     settings = FitSettings() if settings is None else settings
-    require_kind("settings", settings, FitSettings, SETTINGS)
     corners = require(points, boundary)
     stage = Stages(progress)
     # The banded systems are small: more threads cost more than they give, and change the last digits.

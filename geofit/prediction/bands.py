@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_limits
 
 from geofit.data.columns import measurable_places
 from geofit.data.errors import FitError, SettingsError
-from geofit.data.given import arguments_checked, require_kind
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
 from geofit.data.prediction import PredictionResult, Uncertainty
@@ -32,10 +32,6 @@ from geofit.splines import bspline
 __all__ = ["Grid", "PredictionError", "band", "band_directions", "grid_over", "prediction_sd", "uncertainty_on"]
 
 Floats = NDArray[np.float64]
-UNCERTAINTY = message(
-    "prediction.uncertainty-needed",
-    "the uncertainty of an examination is needed: examine(surface).uncertainty; where that is None, its notes say why.",
-)
 #: What a standard deviation is of: the surface, or the contact that a new hole finds there.
 Of = Literal["surface", "contact"]
 
@@ -171,7 +167,6 @@ def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike,
     The posterior of the field is evaluated at each place and multiplied by the calibration factor of the nearest node
     of the grid.
     """
-    require_kind("uncertainty", uncertainty, Uncertainty, UNCERTAINTY)
     model = _model(surface)
     if np.ndim(xyz) > 0 and np.shape(xyz)[-1] == 2:
         xyz = np.insert(np.atleast_2d(np.asarray(xyz)), 2, 0.0, axis=1)

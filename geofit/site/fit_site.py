@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from geofit.data.errors import FitError, PointsError, SettingsError
-from geofit.data.given import SITE, arguments_checked, require_kind
+from geofit.data.given import arguments_checked
 from geofit.data.guard import guarded
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
@@ -111,7 +111,6 @@ def fit_site(
     -----
     Each horizon as :func:`geofit.fit_horizon` does it; each block of a faulted one as :func:`geofit.fit_blocks`.
     """
-    require_kind("site", site, Site, SITE)
     names = tuple(names) or tuple(site.horizons)
     if scheduler is None:
         found = _one_by_one(site, names, changes or {}, progress, fitted or _deaf)
