@@ -150,7 +150,7 @@ class Desktop(QObject):
             self.hear_mistake(args.exc_type, args.exc_value, args.exc_traceback)
 
     def hear_mistake(self, kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-        """Log an error that nobody foresaw, and tell of it once."""
+        """Log an unforeseen error, and show one dialog for it."""
         if isinstance(error, KeyboardInterrupt) or not isinstance(error, Exception):
             self.window.leave_without_asking()
             return

@@ -112,7 +112,7 @@ def _list_reasons(error: GeofitError, options: Mapping[str, object]) -> None:
 
 
 def _issue_file(options: Mapping[str, object]) -> Path | None:
-    """Return the table of issues in the folder of results, or beside the site file that is made; None without them."""
+    """Return where the issues are written: in the results folder or beside the new site file, else None."""
     out, site = options.get("out"), options.get("site")
     if isinstance(out, Path):
         # geofit export names a file there.

@@ -39,7 +39,7 @@ def _hear_qt(kind: QtMsgType, context: QMessageLogContext, text: str | None) -> 
 
 @dataclass(frozen=True)
 class _Entry:
-    """What a record says, in no language yet; ``trace`` is where an error that nobody foresaw was raised."""
+    """What a record says, not yet translated; ``trace`` is the traceback of an unforeseen error."""
 
     created: float
     level: int
