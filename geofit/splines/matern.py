@@ -9,10 +9,11 @@ A field with the spectral density 1 / (tau (kappa^2 + w' H w)^alpha) has the pre
 E_m is a positive form of the derivatives of order m; with kappa -> 0 and alpha = 2 it is the thin plate's energy.
 In terms of how many of the indices are v, k of the i and n of the j, the weight of f_(u^(m-k) v^k) f_(u^(m-n) v^n) is
 the coefficient of x^k y^n in (a + b x + b y + c x y)^m for H = [[a, b], [b, c]]. Each term is a Kronecker product of
-the Gram matrices of both directions.
+Gram matrices of both directions, so that E is the sum of M_ij A_i (x) B_j for a small matrix M of the parameters.
 
 Splines of degree p have no derivatives of an order beyond p. The operator of the exponent 2 p is that of p applied
 twice (Lindgren et al., sec. 2.3): E = F D^-1 F, where F is the matrix of p, and D the lumped Gram matrix of the basis.
+D is a Kronecker product as well, so E is the sum of M_ij M_kl (A_i Du^-1 A_k) (x) (B_j Dv^-1 B_l).
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from scipy.linalg import cho_solve_banded, cholesky_banded
 
 from geofit.splines import bspline
 from geofit.splines.blocks import inverse_band
-from geofit.splines.couplings import applied, banded, from_band, product_near, squared
+from geofit.splines.couplings import banded, from_band
 from geofit.splines.tensor import TensorSpace
 
 __all__ = ["MaternPrecision", "metric", "metric_slopes"]
@@ -92,74 +93,91 @@ class MaternPrecision:
         self.power = alpha // self.order
         #: How many steps apart E couples control points, in each direction.
         self.reach = self.power * space.degree
-        self._formed: tuple[tuple[float, tuple[float, float]], Floats] = (math.nan, (0.0, 0.0)), np.empty(0)
-        self._factored = self._formed
+        self._factored: tuple[tuple[float, tuple[float, float]], Floats] = (math.nan, (0.0, 0.0)), np.empty(0)
 
     @cached_property
-    def _terms(self) -> list[tuple[int, int, int]]:
-        return [(m, k, n) for m in range(self.order + 1) for k in range(m + 1) for n in range(m + 1)]
+    def _terms(self) -> NDArray[np.int64]:
+        """Return (3, terms) the m, k and n of each term of F."""
+        numbers = range(self.order + 1)
+        return np.array([(m, k, n) for m in numbers for k in range(m + 1) for n in range(m + 1)]).T
 
     @cached_property
-    def _factors(self) -> tuple[Floats, Floats]:
-        """Diagonals of the factors of each term of F, upmost first: (terms, 2 p + 1, nu), (terms, 2 p + 1, nv)."""
-        gu, gv = self.space.gram_diagonals
-        m, k, n = np.array(self._terms).T
-        return gu[m - k, m - n], gv[k, n]
+    def _grams(self) -> tuple[Floats, Floats]:
+        """Diagonals of the matrices A_i and B_j, upmost first: (q, 2 p + 1, nu) and (q, 2 p + 1, nv)."""
+        count = self.order + 1
+        along, across = (
+            diagonals[:count, :count].reshape(count**2, *diagonals.shape[2:]) for diagonals in self.space.gram_diagonals
+        )
+        return along, across
 
     @cached_property
-    def _masses(self) -> Floats:
-        """Return (nu, nv) the diagonal of D: the integrals of the basis functions."""
+    def _masses(self) -> tuple[Floats, Floats]:
+        """Diagonals of both factors of D, (nu,) and (nv,): the integrals of the basis functions."""
         p = self.space.degree
         along, across = (
             (knots[p + 1 :] - knots[: -p - 1]) / (p + 1) for knots in (self.space.knots_u, self.space.knots_v)
         )
-        return np.outer(along, across)
+        return along, across
 
     @cached_property
-    def _of_planes(self) -> Floats:
-        """Return (terms, nu, nv, 3) each term times the coefficients of 1, u, v; those of order 2 and more vanish."""
-        p, (gu, gv) = self.space.degree, self.space.gram_diagonals
-        u, v = (bspline.greville(knots, p) for knots in (self.space.knots_u, self.space.knots_v))
-        planes = ((np.ones_like(u), np.ones_like(v)), (u, np.ones_like(v)), (np.ones_like(u), v))
-        terms = [(m, k, n) for m, k, n in self._terms if m < 2]
-        products = [
-            [np.outer(_times(gu[m - k, m - n], along), _times(gv[k, n], across)) for along, across in planes]
-            for m, k, n in terms
-        ]
-        return np.ascontiguousarray(np.moveaxis(np.array(products), 1, 3))
+    def _factors(self) -> tuple[Floats, Floats]:
+        """Diagonals of the factors of E, (q, 2 r + 1, nu) and (q, 2 r + 1, nv); (q, q, ...) if F is applied twice."""
+        if self.power == 1:
+            return self._grams
+        along, across = (_products(grams, mass) for grams, mass in zip(self._grams, self._masses, strict=True))
+        return along, across
+
+    @cached_property
+    def _of_planes(self) -> tuple[list[Floats], list[Floats]]:
+        """The factors of E times those of 1 and u, (q, nu) each or (q, q, nu), and times those of 1 and v."""
+        found: tuple[list[Floats], list[Floats]] = [], []
+        knots = self.space.knots_u, self.space.knots_v
+        for grams, mass, own, products in zip(self._grams, self._masses, knots, found, strict=True):
+            place = bspline.greville(own, self.space.degree)
+            for x in (np.ones_like(place), place):
+                once = _times(grams, x)
+                products.append(once if self.power == 1 else _times(grams, once / mass))
+        return found
 
     def _weights(self, kappa: float, stretch: tuple[float, float]) -> Floats:
         """Return the weight of each term of F."""
         tables = _powers(metric(stretch), self.order)
         order = [math.comb(self.order, m) * kappa ** (2 * (self.order - m)) for m in range(self.order + 1)]
-        return np.array([order[m] * tables[m][k, n] for m, k, n in self._terms])
+        return np.array([order[m] * tables[m][k, n] for m, k, n in self._terms.T])
 
     def _weight_slopes(self, kappa: float, stretch: tuple[float, float]) -> Floats:
         """Return (3, terms) the derivatives of the weights by log kappa and both parts of the stretch."""
         tables, slopes = _powers(metric(stretch), self.order), metric_slopes(stretch)
         order = [math.comb(self.order, m) * kappa ** (2 * (self.order - m)) for m in range(self.order + 1)]
-        rows = [[2 * (self.order - m) * order[m] * tables[m][k, n] for m, k, n in self._terms]]
+        rows = [[2 * (self.order - m) * order[m] * tables[m][k, n] for m, k, n in self._terms.T]]
         for slope in slopes:
             turned = [np.zeros((1, 1)), *(m * _grown(tables[m - 1], slope) for m in range(1, self.order + 1))]
-            rows.append([order[m] * turned[m][k, n] for m, k, n in self._terms])
+            rows.append([order[m] * turned[m][k, n] for m, k, n in self._terms.T])
         return np.array(rows)
 
-    def _form(self, kappa: float, stretch: tuple[float, float]) -> Floats:
-        """Return F, (2 p + 1, nu, 2 p + 1, nv); the last one is kept.
+    def _mixing(self, weights: Floats) -> Floats:
+        """Return M, (..., q, q), of the weights of the terms, (..., terms)."""
+        (m, k, n), count = self._terms, self.order + 1
+        mixing = np.zeros((*weights.shape[:-1], *[count] * 4))
+        mixing[..., m - k, m - n, k, n] = weights
+        return mixing.reshape(*weights.shape[:-1], count**2, count**2)
 
-        Entry (a, i, b, j) couples control point (i + a - p, j + b - p) with (i, j).
+    def _mixed(self, mixing: Floats, first: Floats, across: Floats) -> Floats:
+        """Return what stands beside each factor along u, of those across: (q, ...), (q, q, ...).
+
+        Where F is applied twice, ``first`` is the M of the form that is applied first.
         """
-        if (kappa, stretch) != self._formed[0]:
-            width, (nu, nv) = 2 * self.space.degree + 1, self.space.shape
-            along, across = (factor.reshape(len(factor), -1) for factor in self._factors)
-            form = (along * self._weights(kappa, stretch)[:, None]).T @ across
-            self._formed = (kappa, stretch), form.reshape(width, nu, width, nv)
-        return self._formed[1]
+        mixed = np.tensordot(mixing, across, axes=1)
+        if self.power == 1:
+            return mixed
+        count = len(mixing)
+        return np.asarray(np.matmul(first, mixed.reshape(count, count, -1)).reshape(mixed.shape))
 
     def _factor(self, kappa: float, stretch: tuple[float, float]) -> Floats:
         """Return the banded Cholesky factor of F; the last one is kept."""
         if (kappa, stretch) != self._factored[0]:
-            form = banded(self._form(kappa, stretch)[self.space.degree :])
+            along, across = self._grams
+            form = _summed(along, np.tensordot(self._mixing(self._weights(kappa, stretch)), across, axes=1))
             lower = cholesky_banded(form, lower=True, overwrite_ab=True, check_finite=False)
             self._factored = (kappa, stretch), lower
         return self._factored[1]
@@ -169,8 +187,9 @@ class MaternPrecision:
 
         It is wider than the space's own where the exponent is beyond the degree.
         """
-        form = self._form(kappa, stretch)
-        return banded(form[self.space.degree :] if self.power == 1 else squared(form, self._masses))
+        mixing = self._mixing(self._weights(kappa, stretch))
+        along, across = self._factors
+        return _summed(along, self._mixed(mixing, mixing, across))
 
     def logdet(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> float:
         """Return the logarithm of the determinant of E.
@@ -181,12 +200,15 @@ class MaternPrecision:
             If F is not positive definite to working precision.
         """
         lower = self._factor(kappa, stretch)
-        return float(self.power * 2 * np.log(lower[0]).sum() - (self.power - 1) * np.log(self._masses).sum())
+        once = 2 * float(np.log(lower[0]).sum())
+        return once if self.power == 1 else 2 * once - float(np.log(np.outer(*self._masses)).sum())
 
     def logdet_slopes(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> Floats:
         """Return (3,) the derivatives of :meth:`logdet` by log kappa and both parts of the stretch."""
-        inverse = from_band(inverse_band(self._factor(kappa, stretch)), self.space.shape, self.space.degree)
-        return self.power * self._of_terms(kappa, stretch, inverse)
+        near = from_band(inverse_band(self._factor(kappa, stretch)), self.space.shape, self.space.degree)
+        along, across = (grams.reshape(len(grams), -1) for grams in self._grams)
+        met = along @ near.reshape(along.shape[1], -1) @ across.T
+        return self.power * self._by_parameters(kappa, stretch, met)
 
     def trace_slopes(self, kappa: float, stretch: tuple[float, float], couplings: Floats) -> Floats:
         """Return (3,) the derivatives of tr(G E) by log kappa and both parts of the stretch.
@@ -201,19 +223,28 @@ class MaternPrecision:
             Those of a symmetric matrix G (:mod:`geofit.splines.couplings`) of the reach of E: the degree of the space,
             twice that where F is applied twice.
         """
-        if self.power == 1:
-            return self._of_terms(kappa, stretch, couplings)
-        return 2 * self._of_terms(kappa, stretch, product_near(self._form(kappa, stretch), self._masses, couplings))
+        along, across = self._factors
+        flat = along.reshape(-1, along.shape[-2] * along.shape[-1])
+        met = flat @ couplings.reshape(flat.shape[1], -1)
+        if self.power == 2:
+            # By the first of the two forms: that by the other one is the same.
+            mixing = self._mixing(self._weights(kappa, stretch))
+            across = np.matmul(mixing, across.reshape(*across.shape[:2], -1))
+        count = len(along)
+        once = met.reshape(count, -1) @ across.reshape(count, -1).T
+        return self.power * self._by_parameters(kappa, stretch, once)
+
+    def _by_parameters(self, kappa: float, stretch: tuple[float, float], by_mixing: Floats) -> Floats:
+        """Return (3,) the derivatives by log kappa and both parts of the stretch of those by M, (q, q)."""
+        return np.tensordot(self._mixing(self._weight_slopes(kappa, stretch)), by_mixing, axes=2)
 
     def times_slopes(self, kappa: float, stretch: tuple[float, float], x: Floats) -> Floats:
         """Return (size, 3) the derivatives of E times (size,) coefficients, by log kappa and both stretches."""
-        weights, slopes = self._weights(kappa, stretch), self._weight_slopes(kappa, stretch)
-        products = self._products(x.reshape(self.space.shape))
-        found = np.tensordot(slopes, products, axes=1)
+        net, slopes = x.reshape(1, *self.space.shape), self._mixing(self._weight_slopes(kappa, stretch))
+        found = self._applied(slopes, net)
         if self.power == 2:
-            once = np.tensordot(weights, products, axes=1) / self._masses
-            again = [np.tensordot(weights, self._products(one / self._masses), axes=1) for one in found]
-            found = np.array(again) + np.tensordot(slopes, self._products(once), axes=1)
+            mixing, mass = self._mixing(self._weights(kappa, stretch))[None], np.outer(*self._masses)
+            found = self._applied(mixing, found / mass) + self._applied(slopes, self._applied(mixing, net) / mass)
         return np.asarray(found.reshape(3, -1).T)
 
     def solve(self, kappa: float, stretch: tuple[float, float], right: Floats) -> Floats:
@@ -221,33 +252,56 @@ class MaternPrecision:
         factor = self._factor(kappa, stretch), True
         solved = cho_solve_banded(factor, right, check_finite=False)
         for _ in range(self.power - 1):
-            solved = cho_solve_banded(factor, self._masses.reshape(-1, 1) * solved, check_finite=False)
+            solved = cho_solve_banded(factor, np.outer(*self._masses).reshape(-1, 1) * solved, check_finite=False)
         return np.asarray(solved)
 
     @cached_property
     def _matrices(self) -> tuple[Floats, Floats]:
-        """Factors of each term of F: (terms, nu, nu), (terms, nv, nv)."""
-        along, across = (np.array([_matrix(diagonals) for diagonals in factor]) for factor in self._factors)
+        """The matrices A_i and B_j: (q, nu, nu), (q, nv, nv)."""
+        along, across = (np.array([_matrix(diagonals) for diagonals in grams]) for grams in self._grams)
         return along, across
 
-    def _products(self, net: Floats) -> Floats:
-        """Return (terms, nu, nv) each term of F times a (nu, nv) net."""
+    def _applied(self, mixing: Floats, nets: Floats) -> Floats:
+        """Return the forms F of given M, (k, q, q), times (k, nu, nv) nets; one M or one net serves all."""
         along, across = self._matrices
-        return np.asarray(along @ net @ across.swapaxes(1, 2))
-
-    def _of_terms(self, kappa: float, stretch: tuple[float, float], couplings: Floats) -> Floats:
-        """Return (3,) the derivatives of tr(G F) for couplings G, (2 p + 1, nu, 2 p + 1, nv)."""
-        along, across = (factor.reshape(len(factor), -1) for factor in self._factors)
-        met = along @ couplings.reshape(along.shape[1], across.shape[1])
-        return np.asarray(self._weight_slopes(kappa, stretch) @ (met * across).sum(axis=1))
+        (count, nu, nv), q = nets.shape, len(along)
+        once = (along.reshape(-1, nu) @ nets).reshape(count, q, nu * nv)
+        mixed = np.matmul(mixing.swapaxes(1, 2), once).reshape(-1, q, nu, nv)
+        return np.asarray(np.matmul(mixed, across.swapaxes(1, 2)).sum(axis=1))
 
     def times_planes(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> Floats:
         """Return E times the coefficients of 1, u and v, (size, 3)."""
-        terms = self._of_planes
-        flat = np.tensordot(self._weights(kappa, stretch)[: len(terms)], terms, axes=1)
-        for _ in range(self.power - 1):
-            flat = applied(self._form(kappa, stretch), flat / self._masses[..., None])
-        return np.asarray(flat.reshape(-1, 3))
+        weights = self._weights(kappa, stretch)
+        # The other terms take derivatives of an order at which planes vanish.
+        first = self._mixing(np.where(self._terms[0] < 2, weights, 0.0))
+        mixing = first if self.power == 1 else self._mixing(weights)
+        along, across = self._of_planes
+        ones, u = (one.reshape(-1, one.shape[-1]) for one in along)
+        constant, v = (self._mixed(mixing, first, one).reshape(-1, one.shape[-1]) for one in across)
+        return np.stack([(ones.T @ constant).ravel(), (u.T @ constant).ravel(), (ones.T @ v).ravel()], axis=1)
+
+
+def _summed(along: Floats, across: Floats) -> Floats:
+    """Return the band of the sum of Kronecker products whose factors are given by diagonals, (..., 2 r + 1, n)."""
+    width, nu = along.shape[-2:]
+    reach, nv = width // 2, across.shape[-1]
+    rows = along[..., reach:, :].reshape(-1, (reach + 1) * nu)
+    return banded((rows.T @ across.reshape(-1, width * nv)).reshape(reach + 1, nu, width, nv))
+
+
+def _products(diagonals: Floats, mass: Floats) -> Floats:
+    """Return A_i D^-1 A_k of the matrices of given diagonals, (q, 2 p + 1, n), and a diagonal D, (n,).
+
+    Their diagonals are (q, q, 4 p + 1, n).
+    """
+    q, width, n = diagonals.shape
+    p = width // 2
+    over = np.pad(diagonals / mass, ((0, 0), (0, 0), (p, p)))
+    result = np.zeros((q, q, 2 * width - 1, n))
+    for step in range(width):
+        # From i to i + step - p, and on from there.
+        result[:, :, step : step + width] += over[:, None, :, step : step + n] * diagonals[:, step, None]
+    return result
 
 
 def _matrix(diagonals: Floats) -> Floats:
@@ -260,10 +314,9 @@ def _matrix(diagonals: Floats) -> Floats:
 
 
 def _times(diagonals: Floats, x: Floats) -> Floats:
-    """Return the matrix of the given diagonals, (2 p + 1, count) from the upmost on, times x."""
-    p, count = len(diagonals) // 2, len(x)
-    result = np.zeros(count)
-    for below, diagonal in enumerate(diagonals, -p):
-        low, high = max(-below, 0), count - max(below, 0)
-        result[low + below : high + below] += diagonal[low:high] * x[low:high]
-    return result
+    """Return the matrices of given diagonals, (q, 2 p + 1, n) from the upmost on, times x, (..., n): (q, ..., n)."""
+    (q, width, n), p = diagonals.shape, diagonals.shape[1] // 2
+    result = np.zeros((q, *x.shape[:-1], n + 2 * p))
+    for step in range(width):
+        result[..., step : step + n] += diagonals[:, step].reshape(q, *[1] * (x.ndim - 1), n) * x
+    return result[..., p : p + n]
