@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.long_arrays import LongArray, Rows, blocks, everywhere, without
+from geofit.data.long_arrays import LongArray, Rows, blocks, everywhere, inverse_squares, without
 from geofit.data.settings import FitSettings
 from geofit.fitting.density import CLOUD
 from geofit.fitting.field import plane_trend, relative_noise
 from geofit.fitting.likelihood import plane_coefficients
+from geofit.fitting.observations import Observations
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
@@ -39,6 +41,11 @@ class Data:
     unit: float
     trend: Floats
     slopes: Slopes | None = None
+
+    @cached_property
+    def observations(self) -> Observations:
+        """The points by the weights of their noise."""
+        return Observations(self.plane, self.value, inverse_squares(self.noise))
 
     def whole(self) -> Data:
         """Return the same points, all places held."""

@@ -18,9 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import FitError
-from geofit.data.long_arrays import BLOCK, Rows, blocks, covariance, everywhere, inverse_squares, spread, sum_squares
+from geofit.data.long_arrays import BLOCK, Rows, blocks, covariance, everywhere, spread, sum_squares
 from geofit.data.messages import message
 from geofit.fitting.likelihood import FINEST, UNSOLVABLE, Likelihood, Slope, plane_coefficients
+from geofit.fitting.observations import Observations
 from geofit.fitting.optimum import maximize_over_noise
 from geofit.fitting.slopes import Slopes
 from geofit.fitting.smoothness import ENOUGH, as_smooth, search
@@ -178,9 +179,7 @@ def slope_of(plane: Rows, trend: Floats | None, measured: Slopes | None = None) 
 
 def choose_covariance(
     space: TensorSpace,
-    plane: Rows,
-    z: Rows,
-    noise: Floats,
+    given: Observations,
     smoothing: float | None = None,
     known: Sequence[FieldChoice] = (),
     trend: Floats | None = None,
@@ -193,12 +192,9 @@ def choose_covariance(
     ----------
     space : TensorSpace
         A space of even spans over the area; what it cannot follow counts as noise.
-    plane : (n, 2) array
-        Places, in units of the spacing.
-    z : (n,) or (n, k) array
-        Heights (or coordinates) in metres, trend removed.
-    noise : (n,) array
-        Noise of each point relative to the others (:func:`relative_noise`).
+    given : Observations
+        Heights (or coordinates) in metres, trend removed, at places in units of the spacing, with the inverse squares
+        of their noise relative to each other (:func:`relative_noise`) as weights.
     smoothing : float, optional
         Take this rho; the covariance alone is chosen.
     known : sequence of Field
@@ -219,14 +215,13 @@ def choose_covariance(
     FitError
         If no field gives a solvable system.
     """
-    wide = widened_space(space)
+    wide, plane = widened_space(space), given.plane
     turned = wide.shape[1] > wide.shape[0]
     if turned:
         wide, plane, trend, known = wide.turned, plane[:, ::-1], _exchanged(trend), [one.turned for one in known]
         measured = None if measured is None else measured.turned
-    weight = inverse_squares(noise)
-    band, right = wide.normal_equations(plane, z, weight)
-    square = sum_squares(z, weight)
+    band, right = given.equations(wide, turned)
+    square = sum_squares(given.value, given.weight)
     slope, count = slope_of(plane, trend, measured), len(plane)
     if measured is not None:
         of_slopes = measured.equations(wide, expected)
@@ -261,7 +256,7 @@ def choose_covariance(
             size=space.size,
         )
         raise FitError(text)
-    scatter = spread(z)
+    scatter = spread(given.value)
     fields = []
     for optimum in found:
         own = math.sqrt(optimum.variance) if optimum.value < UNSOLVABLE else math.nan
@@ -307,9 +302,7 @@ def restricted(space: TensorSpace, coefficients: Floats) -> Floats:
 def smooth(
     space: TensorSpace,
     field: FieldChoice,
-    plane: Rows,
-    z: Rows,
-    weight: Floats,
+    given: Observations,
     trend: Floats | None = None,
     measured: Slopes | None = None,
 ) -> Smoothed:
@@ -317,12 +310,12 @@ def smooth(
 
     ``measured`` slopes, about the trend as well, join the heights by their own accuracy.
     """
-    wide = widened_space(space)
+    wide, plane = widened_space(space), given.plane
     turned = wide.shape[1] > wide.shape[0]
     if turned:
         wide, plane, trend, field = wide.turned, plane[:, ::-1], _exchanged(trend), field.turned
         measured = None if measured is None else measured.turned
-    band, right = wide.normal_equations(plane, z, weight)
+    band, right = given.equations(wide, turned)
     if measured is not None:
         of_slopes = measured.equations(wide, field.noise)
         band, right = band + of_slopes[0], right + of_slopes[1]
@@ -338,8 +331,8 @@ def smooth(
     found = slope.directions @ slopes
     if turned:
         net, found = np.swapaxes(net, 0, 1), found[[0, 2, 1]]
-    coefficients = restricted(space, net.reshape(wide.size, *z.shape[1:]))
-    return Smoothed(coefficients, found.reshape(3, *z.shape[1:]))
+    columns = given.value.shape[1:]
+    return Smoothed(restricted(space, net.reshape(wide.size, *columns)), found.reshape(3, *columns))
 
 
 def _exchanged(trend: Floats | None) -> Floats | None:

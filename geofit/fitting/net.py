@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.allowance import allowance, any_coarse, largest_noise
-from geofit.data.long_arrays import Rows, blocks, inverse_squares
+from geofit.data.long_arrays import Rows, blocks
 from geofit.data.messages import Message, message
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data
@@ -122,8 +122,7 @@ def crowded(space: TensorSpace, plane: Rows) -> tuple[float, float] | None:
 
 def smoothed(data: Data, space: TensorSpace, field: FieldChoice) -> Smoothed:
     """Return a chosen field on a space."""
-    weight = inverse_squares(data.noise)
-    return smooth(space, field, data.plane, data.value, weight, data.trend, data.slopes)
+    return smooth(space, field, data.observations, data.trend, data.slopes)
 
 
 def approximate_all(

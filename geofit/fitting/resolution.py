@@ -11,9 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geofit.data.long_arrays import inverse_squares
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
-from geofit.fitting.field import FieldChoice, choose_covariance
+from geofit.fitting.field import FieldChoice, choose_covariance, widened_space
+from geofit.fitting.observations import Observations
 from geofit.fitting.optimum import BEHIND
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
@@ -76,7 +78,8 @@ def sketched_fields(data: Data, smoothing: float | None = None) -> tuple[FieldCh
     """
     some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
     space = even_space(data.area, EVEN, degree_for(len(data.plane)), SKETCH)
-    found = choose_covariance(space, data.plane[some], data.value[some], data.noise[some], smoothing, (), data.trend)
+    given = Observations(data.plane[some], data.value[some], inverse_squares(data.noise[some]))
+    found = choose_covariance(space, given, smoothing, (), data.trend)
     return tuple(field for field, value in found if value < found[0][1] + BEHIND)
 
 
@@ -87,16 +90,18 @@ def choose_field(data: Data, settings: FitSettings, most: int, sketched: Sequenc
     noise on the first level. Its spans are lengthened while the likelihood gains by it; where it gains nothing, they
     are shortened, down to those that points in groups resolve.
     """
-    degree, noise = degree_for(len(data.plane)), data.noise
+    degree, points = degree_for(len(data.plane)), data.observations
     given = None if settings.smoothing == "auto" else float(settings.smoothing)
     limit = min(most, LAST_LEVEL)
     space = even_space(data.area, EVEN, degree, min(FIRST_LEVEL, limit))
+    nearby = int(COARSER * space.size), 2 * FIRST_LEVEL
+    points.foresee(widened_space(even_space(data.area, EVEN, degree, size)) for size in nearby)
     known = tuple(sketched)
     if not known and even_space(data.area, EVEN, degree, SKETCH).size < space.size:
         known = sketched_fields(data, given)
 
     def on(space: TensorSpace, known: Sequence[FieldChoice]) -> list[Level]:
-        found = choose_covariance(space, data.plane, data.value, noise, given, known, data.trend)
+        found = choose_covariance(space, points, given, known, data.trend)
         return [Level(space, field, value) for field, value in found]
 
     def resolved(first: Level) -> Level:
@@ -123,9 +128,7 @@ def choose_field(data: Data, settings: FitSettings, most: int, sketched: Sequenc
     best = min((resolved(one) for one in (firsts[0], *rivals[:1])), key=lambda level: level.value)
     space, field = best.space, best.field
     if data.slopes is not None and len(data.slopes):
-        field = choose_covariance(
-            space, data.plane, data.value, noise, given, [field], data.trend, data.slopes, field.noise
-        )[0][0]
+        field = choose_covariance(space, points, given, [field], data.trend, data.slopes, field.noise)[0][0]
     return field, space
 
 

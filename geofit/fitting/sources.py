@@ -16,11 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.labels import Labels
+from geofit.data.long_arrays import inverse_squares
 from geofit.data.messages import Message, message
 from geofit.fitting.active_points import Data, degree_for, gather_points
 from geofit.fitting.conflicts import trust_of, trust_of_kinds
 from geofit.fitting.field import FieldChoice, choose_covariance
 from geofit.fitting.model import Problem
+from geofit.fitting.observations import Observations
 from geofit.fitting.resolution import EVEN, FIRST_LEVEL, GAIN, SKETCH, SKETCHED, even_space, sketched_fields
 from geofit.fitting.smoothness import ENOUGH
 from geofit.splines.tensor import TensorSpace
@@ -109,7 +111,8 @@ def _found(
     plane, value = data.plane[some], data.value[some]
 
     def trial(noise: Floats, known: Sequence[FieldChoice]) -> _Trial:
-        field, own = choose_covariance(space, plane, value, noise, None, known, data.trend)[0]
+        given = Observations(plane, value, inverse_squares(noise))
+        field, own = choose_covariance(space, given, None, known, data.trend)[0]
         return _Trial(noise, own + 2 * float(np.log(noise).sum()), field)
 
     def times(factor: float, before: _Trial, own: NDArray[np.bool_]) -> _Trial:

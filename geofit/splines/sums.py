@@ -1,8 +1,8 @@
 """What many points say to a tensor-product spline, summed cell by cell: the state does not grow with the points.
 
 On one cell (a span of u times a span of v) each product of two basis functions is a polynomial of degree 2p in u and
-in v, so (2p + 1)^2 moments hold all that its points have to say. Heights count from the mean of their cell: what a
-spline leaves of them is then found from the sums as well, without a second look at the points.
+in v, so (2p + 1)^2 moments hold all that its points have to say. Those of small cells add up to those of a larger one:
+one look at the points serves several splines whose knots are lines of one mesh.
 """
 
 from __future__ import annotations
@@ -14,126 +14,133 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from geofit.data.long_arrays import Rows, blocks
+from geofit.data.long_arrays import Rows
 from geofit.splines import bspline
 
-__all__ = ["CellSums", "cell_sums"]
+__all__ = ["CellSums", "Moments", "cell_sums"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-#: Points that are worked on together: their polynomials stay in the processor's cache.
-_CHUNK = 16_384
+#: Points that are sorted together, so that each cell has many of them, and those that are worked on together: their
+#: polynomials stay in the processor's cache.
+_SORTED, _CHUNK = 1 << 20, 16_384
 
 
 @dataclass(frozen=True, eq=False)
 class CellSums:
     """Sums over the points of each cell, for the b = (p + 1)^2 control points that act there.
 
-    ``index`` (cells, p + 1, p + 1) numbers of these control points; ``blocks`` (cells, b, b) sums of w B_i B_j and
-    ``over_mean`` (cells, b) of w B_i (z - mean), with ``mean`` (cells,) the cell's mean height; ``squares`` the sum of
-    all w (z - mean)^2.
+    ``index`` (cells, b) numbers of these control points; ``blocks`` (cells, b, b) sums of w B_i B_j, ``right``
+    (cells, b) of w B_i z.
     """
 
     index: Ints
     blocks: Floats
-    over_mean: Floats
-    mean: Floats
-    squares: float
+    right: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Moments:
+    """Sums of Legendre polynomials over the points of each cell of a mesh.
+
+    They serve every spline of the degree p whose knots are lines of the mesh.
+
+    Parameters
+    ----------
+    lines_u, lines_v : (k + 1,), (m + 1,) arrays
+        Lines of the mesh, ascending; the outermost cells hold what lies beyond.
+    weights : (k, m, 2p + 1, 2p + 1) array
+        Sums of w P_i(u) P_j(v).
+    heights : (k, m, p + 1, p + 1) array
+        Sums of w P_i(u) P_j(v) z.
+    """
+
+    lines_u: Floats
+    lines_v: Floats
+    weights: Floats
+    heights: Floats
+
+    @classmethod
+    def of(cls, lines_u: Floats, lines_v: Floats, degree: int, plane: Rows, z: Rows, weight: Floats) -> Moments:
+        """Sum (n, 2) places with heights (n,) and weights (n,)."""
+        shape = len(lines_u) - 1, len(lines_v) - 1
+        sums = np.zeros((shape[0] * shape[1], 2 * degree + 1, 3 * degree + 2))
+        for start in range(0, len(z), _SORTED):
+            some = slice(start, start + _SORTED)
+            _add(sums, lines_u, lines_v, degree, plane[some], z[some], weight[some])
+        grid = sums.reshape(*shape, *sums.shape[1:])
+        return cls(lines_u, lines_v, grid[..., : 2 * degree + 1], grid[..., : degree + 1, 2 * degree + 1 :])
 
     @property
-    def right(self) -> Floats:
-        """Sums of w B_i z, (cells, b): the basis functions of a cell add up to one."""
-        return np.asarray(self.over_mean + self.mean[:, None] * self.blocks.sum(axis=2))
+    def turned(self) -> Moments:
+        """The same sums with u and v exchanged."""
+        weights, heights = (sums.transpose(1, 0, 3, 2) for sums in (self.weights, self.heights))
+        return Moments(self.lines_v, self.lines_u, weights, heights)
 
-    def misfit(self, coefficients: Floats) -> float:
-        """Return the weighted sum of squares that a spline leaves of the heights."""
-        local = coefficients[self.index] - self.mean[:, None]
-        twice = np.einsum("cij,cj->ci", self.blocks, local) - 2 * self.over_mean
-        return max(self.squares + float((local * twice).sum()), 0.0)
+    def serve(self, knots_u: Floats, knots_v: Floats) -> bool:
+        """Return whether all knots are lines of the mesh, and all points lie between the outermost ones."""
+        count = self.weights[:, :, 0, 0]
+        return all(
+            np.isin(knots, lines).all() and not held[(lines[1:] <= knots[0]) | (lines[:-1] >= knots[-1])].any()
+            for knots, lines, held in ((knots_u, self.lines_u, count), (knots_v, self.lines_v, count.T))
+        )
+
+    def on(self, knots_u: Floats, knots_v: Floats) -> CellSums:
+        """Return the sums for the splines of two knot vectors, all of which are lines of the mesh."""
+        cells_u, cells_v = np.unique(knots_u), np.unique(knots_v)
+        weights, heights = self.weights, self.heights
+        if len(cells_u) < len(self.lines_u) or len(cells_v) < len(self.lines_v):
+            weights, heights = (
+                _merged(self.lines_v, cells_v, _merged(self.lines_u, cells_u, sums)) for sums in (weights, heights)
+            )
+        return _of_basis(knots_u, knots_v, heights.shape[2] - 1, weights, heights)
 
 
 def cell_sums(knots_u: Floats, knots_v: Floats, degree: int, plane: Rows, z: Rows, weight: Floats) -> CellSums:
     """Sum (n, 2) places with heights (n,) and weights (n,) by the cells of two knot vectors."""
-    cells_u, cells_v = np.unique(knots_u), np.unique(knots_v)
-    shape = len(cells_u) - 1, len(cells_v) - 1
-    total = _Moments.none(shape[0] * shape[1], degree)
-    for parts in blocks(plane, z, weight):
-        total.add(_moments(cells_u, cells_v, degree, *parts))
-    grid = total.sums.reshape(*shape, *total.sums.shape[1:])
-    moments, heights = grid[..., : 2 * degree + 1], grid[..., : degree + 1, 2 * degree + 1 :]
-    return _of_basis(knots_u, knots_v, degree, moments, heights, total.mean, total.squares)
+    return Moments.of(np.unique(knots_u), np.unique(knots_v), degree, plane, z, weight).on(knots_u, knots_v)
 
 
-@dataclass(eq=False)
-class _Moments:
-    """Sums of Legendre polynomials over the points of each cell, heights counted from the cell's mean.
-
-    ``sums`` (cells, 2p + 1, 3p + 2): of w P_i(u) P_j(v), then of w P_i(u) P_j(v) (z - mean); ``count``, ``mean``
-    (cells,); ``squares`` the sum of all w (z - mean)^2.
-    """
-
-    sums: Floats
-    count: Floats
-    mean: Floats
-    squares: float
-
-    @classmethod
-    def none(cls, cells: int, p: int) -> _Moments:
-        """Return the sums of no points."""
-        return cls(np.zeros((cells, 2 * p + 1, 3 * p + 2)), np.zeros(cells), np.zeros(cells), 0.0)
-
-    def add(self, other: _Moments) -> None:
-        """Add the sums of other points; both count their heights from the common mean then."""
-        count = self.count + other.count
-        mean = (self.count * self.mean + other.count * other.mean) / np.maximum(count, 1)
-        for part in (self, other):
-            part.move(mean)
-        self.sums += other.sums
-        self.count = count
-        self.squares += other.squares
-
-    def move(self, mean: Floats) -> None:
-        """Count heights from another mean of each cell."""
-        shift = np.where(self.count > 0, self.mean - mean, 0.0)
-        heights = self.sums.shape[1]
-        weights, first = self.sums[:, 0, 0], self.sums[:, 0, heights]
-        self.squares += float((shift * (2 * first + shift * weights)).sum())
-        self.sums[:, :, heights:] += shift[:, None, None] * self.sums[:, :, : self.sums.shape[2] - heights]
-        self.mean = mean
-
-
-def _moments(cells_u: Floats, cells_v: Floats, p: int, plane: Floats, z: Floats, weight: Floats) -> _Moments:
-    shape = len(cells_u) - 1, len(cells_v) - 1
-    found = _Moments.none(shape[0] * shape[1], p)
-    if not len(z):
-        return found
-    cell = bspline.intervals(cells_u, plane[:, 0]) * shape[1] + bspline.intervals(cells_v, plane[:, 1])
-    order = np.argsort(cell.astype(np.min_scalar_type(len(found.count))), kind="stable")
+def _add(sums: Floats, lines_u: Floats, lines_v: Floats, p: int, plane: Floats, z: Floats, weight: Floats) -> None:
+    """Add points to the sums of their cells, (cells, 2p + 1, 3p + 2), those with the heights last."""
+    across = len(lines_v) - 1
+    cell = bspline.intervals(lines_u, plane[:, 0]) * across + bspline.intervals(lines_v, plane[:, 1])
+    order = np.argsort(cell.astype(np.min_scalar_type(len(sums))), kind="stable")
     cell, plane, z, weight = cell[order], plane.take(order, axis=0), z[order], weight[order]
-    starts = np.flatnonzero(np.diff(cell, prepend=-1))
-    found.count[cell[starts]] = np.diff(starts, append=len(z))
-    found.mean[cell[starts]] = np.add.reduceat(z, starts) / found.count[cell[starts]]
-    z -= found.mean[cell]
-    found.squares = float(weight @ (z * z))
     for start in range(0, len(z), _CHUNK):
         part = slice(start, start + _CHUNK)
         first = np.flatnonzero(np.diff(cell[part], prepend=-1))
         ends = np.append(first[1:], len(cell[part]))
         at = cell[part][first]
         left, right = np.empty((2 * p + 1, ends[-1])), np.empty((3 * p + 2, ends[-1]))
-        _legendre(cells_u, at // shape[1], ends - first, plane[part, 0], left)
-        _legendre(cells_v, at % shape[1], ends - first, plane[part, 1], right[: 2 * p + 1])
+        _legendre(lines_u, at // across, ends - first, plane[part, 0], left)
+        _legendre(lines_v, at % across, ends - first, plane[part, 1], right[: 2 * p + 1])
         np.multiply(right[: p + 1], z[part], out=right[2 * p + 1 :])
         left *= weight[part]
         for k, low, high in zip(at.tolist(), first.tolist(), ends.tolist(), strict=True):
-            found.sums[k] += left[:, low:high] @ right[:, low:high].T
-    return found
+            sums[k] += left[:, low:high] @ right[:, low:high].T
 
 
-def _of_basis(
-    knots_u: Floats, knots_v: Floats, p: int, moments: Floats, right: Floats, mean: Floats, squares: float
-) -> CellSums:
+def _merged(lines: Floats, cells: Floats, sums: Floats) -> Floats:
+    """Return sums (k, m, i, j) over the cells along u of a mesh as those over longer cells: (m, cells, j, i).
+
+    Cells of the mesh that lie beyond are left out. Called once more, with the lines along v, it brings both axes back
+    in their order.
+    """
+    within = slice(*np.searchsorted(lines, (cells[0], cells[-1])))
+    lines, sums, count = lines[within.start : within.stop + 1], sums[within], sums.shape[2]
+    own = np.searchsorted(cells, (lines[1:] + lines[:-1]) / 2) - 1
+    nodes = legendre.leggauss(count)[0]
+    at = (lines[:-1, None] + np.diff(lines)[:, None] * (1 + nodes) / 2 - cells[own, None]) / np.diff(cells)[own, None]
+    # The polynomials of the longer cell in those of the shorter one.
+    table = np.linalg.solve(legendre.legvander(nodes, count - 1), legendre.legvander(2 * at - 1, count - 1))
+    flat = np.matmul(table.swapaxes(1, 2), sums.transpose(0, 2, 1, 3).reshape(len(own), count, -1))
+    whole = np.add.reduceat(flat, np.searchsorted(own, np.arange(len(cells) - 1)), axis=0)
+    return np.asarray(whole.reshape(len(cells) - 1, count, sums.shape[1], sums.shape[3]).transpose(2, 0, 3, 1))
+
+
+def _of_basis(knots_u: Floats, knots_v: Floats, p: int, moments: Floats, heights: Floats) -> CellSums:
     """Turn sums of Legendre polynomials into sums of basis functions."""
     (fu, lu), (fv, lv) = _local_polynomials(knots_u, p), _local_polynomials(knots_v, p)
     product = _legendre_products(p)
@@ -141,11 +148,11 @@ def _of_basis(
     qv = np.einsum("cai,cbj,ijk->cabk", lv, lv, product)
     half = np.einsum("cabk,cdkl->cdabl", qu, moments, optimize=True)
     blocks = np.einsum("cdabl,defl->cdaebf", half, qv, optimize=True)
-    sums = np.einsum("cai,dej,cdij->cdae", lu, lv, right, optimize=True)
+    sums = np.einsum("cai,dej,cdij->cdae", lu, lv, heights, optimize=True)
     step, across = np.arange(p + 1), len(knots_v) - p - 1
     index = ((fu[:, None] + step)[:, None, :, None] * across) + (fv[:, None] + step)[None, :, None, :]
     b = (p + 1) ** 2
-    return CellSums(index.reshape(-1, b), blocks.reshape(-1, b, b), sums.reshape(-1, b), mean, squares)
+    return CellSums(index.reshape(-1, b), blocks.reshape(-1, b, b), sums.reshape(-1, b))
 
 
 def _legendre(cells: Floats, span: Ints, count: Ints, x: Floats, rows: Floats) -> None:

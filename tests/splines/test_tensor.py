@@ -9,6 +9,7 @@ from refusals import refused
 
 from geofit.data.errors import FitError
 from geofit.splines import bspline, tensor
+from geofit.splines.sums import Moments
 from geofit.splines.tensor import CELLWISE, Factor, TensorSpace, band_times
 
 
@@ -212,14 +213,36 @@ def test_band_times_equals_the_dense_product(shape):
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3])
-def test_what_a_spline_leaves_is_found_from_the_sums_of_the_cells(degree):
-    space = space_of(degree)
-    plane, z, weight = scattered(space, 3_000)
-    # Heights a thousand times their noise: nothing of it may be lost.
-    coefficients = np.random.default_rng(1).normal(0, 1000, space.size)
-    z += space.matrix(plane) @ coefficients
-    left = float(weight @ np.square(z - space.matrix(plane) @ coefficients))
-    assert space.sums(plane, z, weight).misfit(coefficients) == pytest.approx(left, rel=1e-8)
+@pytest.mark.parametrize("turned", [False, True])
+def test_moments_of_one_mesh_serve_all_spaces_on_its_lines(degree, turned):
+    rng, lines_u, lines_v = np.random.default_rng(4), np.linspace(0, 10, 13), np.linspace(0, 6, 9)
+    plane, z, weight = rng.uniform(0, (10, 6), (2_000, 2)), rng.normal(size=2_000), rng.uniform(0.5, 2, 2_000)
+    moments = Moments.of(lines_u, lines_v, degree, plane, z, weight)
+    for some_u, some_v in ((slice(None), slice(None)), ([0, 1, 5, 12], [0, 3, 4, 8]), ([0, 12], slice(None))):
+        knots = (bspline.clamped_knots(lines[some], degree) for lines, some in ((lines_u, some_u), (lines_v, some_v)))
+        space = TensorSpace(*knots, degree)
+        assert moments.serve(space.knots_u, space.knots_v)
+        expected = space.equations_of(*space.rows(plane), z, weight)
+        if turned:
+            space = space.turned
+            expected = space.equations_of(*space.rows(plane[:, ::-1]), z, weight)
+        found = space.equations((moments.turned if turned else moments).on(space.knots_u, space.knots_v))
+        for one, other in zip(found, expected, strict=True):
+            np.testing.assert_allclose(one, other, atol=1e-11)
+    assert not moments.serve(bspline.clamped_knots([0, 5.1, 10], degree), bspline.clamped_knots(lines_v, degree))
+    assert not moments.serve(bspline.clamped_knots(lines_u[:-1], degree), bspline.clamped_knots(lines_v, degree))
+
+
+def test_a_mesh_may_reach_beyond_a_space_where_no_points_lie():
+    rng, lines = np.random.default_rng(4), np.linspace(-4, 16, 21)
+    plane, z, weight = rng.uniform(0, 10, (2_000, 2)), rng.normal(size=2_000), np.ones(2_000)
+    moments = Moments.of(lines, lines, 3, plane, z, weight)
+    knots = bspline.clamped_knots([-1, 0, 2, 5, 9, 10, 12], 3), bspline.clamped_knots([0, 4, 10], 3)
+    space = TensorSpace(*knots)
+    assert moments.serve(*knots)
+    expected = space.equations_of(*space.rows(plane), z, weight)
+    for one, other in zip(space.equations(moments.on(*knots)), expected, strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-10)
 
 
 def test_a_turned_space_has_the_same_surfaces():
