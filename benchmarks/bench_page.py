@@ -31,10 +31,10 @@ TEXTS = {
     "large": (
         "A million points next to sparse P-splines (`fit.py large`)",
         """Wall time. The first reference has a penalty known to be good, and is given, before the clock starts, the
-        smallest number of spans with which its error is at most 1.1 times geofit's. The second knows no more than
-        geofit does: it has 60 x 60 spans and searches its penalty by generalised cross-validation. Linear algebra runs
-        on one thread; geofit's check, which projects every point on the surface, on all processors. The references
-        check nothing.""",
+        fewest spans (20, 24, ... 72) with which its error is at most 1.1 times geofit's; if none suffices, those of its
+        least error. The second knows no more than geofit does: it has 60 x 60 spans and searches its penalty by
+        generalised cross-validation. Linear algebra runs on one thread; geofit's check, which projects every point on
+        the surface, on all processors. The references check nothing.""",
     ),
     "scattered": (
         "Ten thousand points next to sparse P-splines (`field.py scattered`)",

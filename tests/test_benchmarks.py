@@ -198,8 +198,8 @@ def test_sites_of_the_field_are_reproducible_and_lie_in_their_area(load):
 
 def test_smallest_size_within_a_limit(load):
     fit = load("fit")
-    assert fit.smallest(lambda n: 1 / n, 0.1, 2, 50) == 10
-    assert fit.smallest(lambda n: 1 / n, 0.001, 2, 50) is None
+    assert fit.smallest(lambda n: 1 / n, 0.1, range(2, 50, 4)) == 10
+    assert fit.smallest(lambda n: abs(n - 21), 0.001, range(2, 50, 4)) == 22
 
 
 def test_time_of_a_fit_leaves_out_the_check(load):
