@@ -56,7 +56,7 @@ def test_dyads_are_those_of_dense_columns(shape):
     np.testing.assert_allclose(dyads(net, 1), couplings_of(columns @ columns.T, shape, 1), atol=1e-12)
 
 
-@pytest.mark.parametrize(("size", "width"), [(40, 7), (35, 7), (6, 5), (9, 8), (1, 0), (5, 1)])
+@pytest.mark.parametrize(("size", "width"), [(40, 7), (35, 7), (6, 5), (9, 8), (1, 0), (5, 1), (330, 131)])
 def test_the_inverse_near_the_diagonal_is_that_of_the_whole_matrix(size, width):
     full = np.random.default_rng(3).normal(size=(size, size))
     full = np.where(np.abs(np.subtract.outer(np.arange(size), np.arange(size))) <= width, full + full.T, 0.0)
