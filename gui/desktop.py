@@ -125,7 +125,7 @@ class Desktop(QObject):
         self.app.setQuitOnLastWindowClosed(False)
         old.leave_without_asking()
         self.window = self._window()
-        self.window.panels.log.take_over(old.panels.log)
+        self.window.take_over(old)
         self.window.show()
         self.app.setQuitOnLastWindowClosed(True)
         old.deleteLater()

@@ -23,7 +23,6 @@ from geofit.io.export.write import FORMATS
 from geofit.project.document import Document
 from geofit.project.export_task import export_surfaces
 from geofit.project.interventions import interventions_of
-from geofit.project.step_files import StepFile
 from geofit.report.result import HorizonResult
 
 __all__ = ["Delivering"]
@@ -53,9 +52,12 @@ class Delivering(QObject):
         self._document, self._activity, self._preferences = document, activity, preferences
         self._panels, self._showing, self._window = workspace, showing, window
         self._reports: list[str] = []
-        #: By horizon: the surface that was exported last, and the file that holds it.
-        self._exported: dict[str, tuple[HorizonFit, StepFile]] = {}
         workspace.tree.report_chosen.connect(lambda path: QDesktopServices.openUrl(QUrl.fromLocalFile(path)))
+
+    def take_over(self, other: Delivering) -> None:
+        """List the reports that another window has written."""
+        self._reports = other._reports
+        self._panels.tree.show_reports(self._reports)
 
     def export_step(self) -> None:
         """Ask for units and tolerance, write STEP and read it back."""
@@ -67,9 +69,8 @@ class Delivering(QObject):
             site = self._document.site
             dialog = ExportDialog(surfaces, self._window, verdicts, self._folder(), site.title, site.datum)
             dialog.exec()
-            self._showing.show_read_back({name: back for file in dialog.files for name, back in file.read_back.items()})
             if dialog.files:
-                self._exported |= {name: (surfaces[name], file) for file in dialog.files for name in file.read_back}
+                self._showing.show_exported(surfaces, dialog.files)
                 self._written([file.path for file in dialog.files])
 
     def export_other(self) -> None:
@@ -151,14 +152,12 @@ class Delivering(QObject):
         change = self._document.comparison(name)
         provenance = self._document.state.provenances.get(name)
         excluded, edits = (None, ()) if provenance is None else interventions_of(self._document.site, provenance)
-        exported, file = self._exported.get(name, (None, None))
-        if file is None or exported is not surface:
-            return HorizonResult(surface, site, prediction=prediction, excluded=excluded, edits=edits, change=change)
+        file = self._showing.file_of(name, surface)
         return HorizonResult(
             surface,
             site,
-            file.read_back[name],
-            step_bytes=file.size,
+            None if file is None else file.read_back[name],
+            step_bytes=0 if file is None else file.size,
             prediction=prediction,
             excluded=excluded,
             edits=edits,

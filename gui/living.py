@@ -63,6 +63,10 @@ class Living(QObject):
         self._document.site_changed.disconnect(self._on_site)
         self._document.result_changed.disconnect(self._compare)
 
+    def take_over(self, other: Living) -> None:
+        """Go on with what another window knows of the last change of the data."""
+        self._last = other._last
+
     def ask_files(self) -> None:
         """Ask for files, and add them to the site."""
         folder = self._document.folder

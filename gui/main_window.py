@@ -125,6 +125,13 @@ class MainWindow(QMainWindow):
         """Whether something is computed here or in the dialog of a survey, which would go with the window."""
         return self.activity.busy or (self.surveys.dialog is not None and self.surveys.dialog.running)
 
+    def take_over(self, other: MainWindow) -> None:
+        """Go on with what another window on the session has found and the session itself does not keep."""
+        self.panels.log.take_over(other.panels.log)
+        self.living.take_over(other.living)
+        self.showing.take_over(other.showing)
+        self.delivering.take_over(other.delivering)
+
     def check_language(self) -> None:
         """Mark the language of the window in its menu."""
         self._choose_in(self.actions_.languages, self.preferences.language)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import cast
@@ -21,6 +21,7 @@ from geofit.gui.view3d.sight import Sight
 from geofit.gui.workspace import Workspace
 from geofit.project.document import Document
 from geofit.project.provenance import Provenance
+from geofit.project.step_files import StepFile
 from geofit.site.order import Order
 from geofit.site.throw import FaultCut
 
@@ -58,7 +59,8 @@ class Showing(QObject):
         self.cuts: tuple[FaultCut, ...] = ()
         #: From what the horizons were made that orders and cuts are about.
         self._compared: dict[str, Provenance] = {}
-        self._read_back: dict[str, tuple[HorizonFit, ReadBack]] = {}
+        #: By horizon: the surface that was exported last, and the file that holds it.
+        self._exported: dict[str, tuple[HorizonFit, StepFile]] = {}
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self.now)
         workspace.view.sharper_wanted.connect(self._sharpen)
@@ -168,10 +170,16 @@ class Showing(QObject):
         self._compared = {**self._compared, **self._document.state.provenances}
         self._show_horizon()
 
-    def show_read_back(self, found: Mapping[str, ReadBack]) -> None:
+    def take_over(self, other: Showing) -> None:
+        """Show what another window on the same document has compared and exported, and its section."""
+        self.orders, self.cuts, self._compared = other.orders, other.cuts, other._compared
+        self._exported, self.line = other._exported, other.line
+        self._on_site_again()
+        self.renew()
+
+    def show_exported(self, surfaces: Mapping[str, HorizonFit], files: Sequence[StepFile]) -> None:
         """Show what the reader found in the files of surfaces, for as long as these are the ones."""
-        surfaces = self._document.surfaces()
-        self._read_back |= {name: (surfaces[name], back) for name, back in found.items() if name in surfaces}
+        self._exported |= {name: (surfaces[name], file) for file in files for name in file.read_back}
         self._show_tree()
         self._show_horizon()
 
@@ -228,7 +236,7 @@ class Showing(QObject):
             surface,
             prediction,
             self._orders_of(name),
-            self._file_of(name, surface),
+            None if surface is None or name is None else self._read_back(name, surface),
             tuple(cut for cut in self.cuts if name in (cut.up, cut.down)),
         )
         panels.prediction.show_prediction(
@@ -261,12 +269,16 @@ class Showing(QObject):
         if surface is None or surface.accuracy is None:
             return None
         orders = (order.check() for order in self._orders_of(name))
-        return verdict_of(surface.accuracy, self._document.prediction(name), self._file_of(name, surface), orders)
+        return verdict_of(surface.accuracy, self._document.prediction(name), self._read_back(name, surface), orders)
 
-    def _file_of(self, name: str | None, surface: HorizonFit | None) -> ReadBack | None:
-        """Return what the reader found in the file that has this very surface."""
-        written, back = self._read_back.get(name or "", (None, None))
-        return back if surface is not None and written is surface else None
+    def file_of(self, name: str, surface: HorizonFit) -> StepFile | None:
+        """Return the file that was written of this very surface."""
+        written, file = self._exported.get(name, (None, None))
+        return file if written is surface else None
+
+    def _read_back(self, name: str, surface: HorizonFit) -> ReadBack | None:
+        file = self.file_of(name, surface)
+        return None if file is None else file.read_back[name]
 
     def _orders_of(self, name: str | None) -> tuple[Order, ...]:
         return tuple(order for order in self.orders if name in (order.upper, order.lower))
@@ -274,7 +286,7 @@ class Showing(QObject):
     def _on_site(self) -> None:
         self._site = True
         self.line, self.orders, self.cuts = None, (), ()
-        self._read_back.clear()
+        self._exported.clear()
         self._later.start()
 
     def _on_order(self) -> None:

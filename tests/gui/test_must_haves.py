@@ -302,6 +302,13 @@ def test_17_what_the_export_read_back_stands_in_the_checks(shown, qtbot, tmp_pat
     assert (tmp_path / "dam.step").is_file()
     tree = shown.panels.checks.tree
     assert "STEP file read back" in [tree.topLevelItem(k).text(0) for k in range(tree.topLevelItemCount())]
+    rows = tree.topLevelItemCount()
+    result = shown.window.delivering.result(NAME, shown.document.surface(NAME))
+    shown.desktop.change_language("zh_CN")
+    shown.idle()
+    assert shown.window.panels.checks.tree.topLevelItemCount() == rows
+    again = shown.window.delivering.result(NAME, shown.document.surface(NAME))
+    assert again.read_back is result.read_back is not None
 
 
 def test_18_the_report_has_figures_and_hashes_and_is_listed(shown, qtbot, tmp_path, monkeypatch):

@@ -80,6 +80,25 @@ def test_horizons_that_cross_stay_a_warning_until_one_of_them_changes(crossing):
     assert not showing.orders
 
 
+def test_an_order_that_was_checked_is_known_in_another_language(crossing):
+    crossing.trigger("check_order")
+    crossing.idle()
+    before = crossing.window.showing.verdict("up")
+    assert str(before.checks.text).endswith("order")
+    crossing.document.select("up")
+    for code in ("zh_CN", "en"):
+        crossing.desktop.change_language(code)
+        crossing.idle()
+        assert crossing.window.showing.verdict("up") == before
+        tree = crossing.window.panels.checks.tree
+        groups = [tree.topLevelItem(k).text(0) for k in range(tree.topLevelItemCount())]
+        assert ("Order of horizons" in groups) is (code == "en")
+        assert len(groups) >= 2
+    crossing.window.fitting.push(SetOrder(("low", "up")))
+    crossing.idle()
+    assert not crossing.window.showing.orders
+
+
 def test_an_order_that_was_checked_is_forgotten_with_another_order(crossing):
     crossing.trigger("check_order")
     crossing.idle()
