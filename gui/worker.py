@@ -279,6 +279,7 @@ class Helper:
                 raise (ended if begun else _NotBegunError(ended)) from None
             if kind == "begun":
                 begun = True
+                self._sender.join()  # the order was read: no thread outlives the call
             elif kind == "progress":
                 name, fraction = value
             elif kind == "error":

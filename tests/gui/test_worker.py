@@ -161,6 +161,19 @@ def test_a_process_of_its_own_gives_its_result(owner, qtbot):
     assert results[0] != os.getpid()
 
 
+def test_no_thread_outlives_the_call_of_a_process(owner, qtbot, monkeypatch):
+    def slow(helper, order):
+        helper.pipe.send_bytes(order)
+        time.sleep(0.5)  # on a busy machine the result may be here before the thread has ended
+
+    monkeypatch.setattr(worker.Helper, "_send", slow)
+    before = set(threading.enumerate())
+    task = worker.run_in_process(owner, double, 2)
+    with qtbot.waitSignal(task.ended, timeout=60_000):
+        pass
+    assert not [thread for thread in set(threading.enumerate()) - before if not thread.name.startswith("Dummy-")]
+
+
 def test_cancel_ends_a_process_that_tells_nothing(owner, qtbot):
     stopped = []
     task = worker.run_in_process(owner, stuck, on_cancelled=lambda: stopped.append(1))
