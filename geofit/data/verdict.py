@@ -183,12 +183,18 @@ def _with_offsets(lamp: Lamp, prediction: PredictionResult | None) -> Lamp:
 def _error(rms: float, scheme: Scheme, epsilon: float) -> tuple[Level, Message]:
     ratio = rms / epsilon
     level: Level = "pass" if ratio <= 1 else "warning" if ratio < FAR else "fail"
+    if ratio < 0.01:
+        return level, message(
+            "data.verdict-left-out-error-small",
+            "left-out error {error:length} m < 0.01 ε ({scheme})",
+            error=rms,
+            scheme=_SCHEMES[scheme],
+        )
     text = message(
         "data.verdict-left-out-error",
         "left-out error {error:length} m = {ratio:g} ε ({scheme})",
         error=rms,
-        # Three digits are known at most.
-        ratio=round(ratio, 1) if ratio < 100 else float(f"{ratio:.2e}"),
+        ratio=float(f"{ratio:.2g}"),
         scheme=_SCHEMES[scheme],
     )
     return level, text

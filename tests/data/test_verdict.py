@@ -103,6 +103,8 @@ def body_left_out(**changed):
     [
         ({}, "pass", "left-out error 0.400 m = 0.8 ε (holes left out)"),
         ({}, "pass", "1.5 m of 300.0 m on the wrong side"),
+        ({"error": 0.017}, "pass", "= 0.034 ε"),
+        ({"error": 4e-6}, "pass", "left-out error 4.00e-6 m < 0.01 ε"),
         ({"error": 2.0}, "warning", "4 ε"),
         ({"error": 5.0}, "fail", "10 ε"),
         ({"inside": 0.8}, "warning", "the 90 % band contains 80 %"),
