@@ -19,11 +19,21 @@ from geofit.io.source import Source
 from geofit.io.toml_file import parse_toml
 from geofit.io.toml_text import toml_key, toml_value
 
-__all__ = ["KINDS", "ColumnMapping", "load_mappings", "save_mappings"]
+__all__ = ["KINDS", "ColumnMapping", "load_mappings", "require_known", "save_mappings"]
 
 VERSION = 1
 #: What a table or drawing can hold; "skip" leaves it out.
 KINDS = (*SCHEMAS, "ground", "grid", "drawing", "skip")
+
+
+def require_known(kind: str, file: str) -> None:
+    """Raise InputError unless a kind of table is one of :data:`KINDS`."""
+    if kind not in KINDS:
+        raise InputError(
+            message("io.mapping-kind-unknown", "A mapping has no kind '{kind}'", kind=Untranslated(kind)),
+            nearest_name(kind, KINDS, message("io.known-kinds", "The kinds are {names}.", names=", ".join(KINDS))),
+            file=file,
+        )
 
 
 @arguments_checked
@@ -61,14 +71,7 @@ class ColumnMapping:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "horizons", tuple(self.horizons))
-        if self.kind not in KINDS:
-            raise InputError(
-                message("io.mapping-kind-unknown", "A mapping has no kind '{kind}'", kind=Untranslated(self.kind)),
-                nearest_name(
-                    self.kind, KINDS, message("io.known-kinds", "The kinds are {names}.", names=", ".join(KINDS))
-                ),
-                file=self.file,
-            )
+        require_known(self.kind, self.file)
 
     def suits(self, file: str, table: str = "", kind: str | None = None) -> bool:
         """Whether the mapping is for a table of a file; case does not count, nor the folder if it names none."""

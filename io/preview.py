@@ -13,7 +13,7 @@ from geofit.io.columns import HORIZON_COLUMNS, SCHEMAS, SECTIONS, Schema
 from geofit.io.formats import TABLE_FORMATS, USUAL_TABLES, read_any_table, table_names
 from geofit.io.guess import USABLE, RoleGuess, guess_roles, sample_of
 from geofit.io.journal import Journal
-from geofit.io.mapping import ColumnMapping
+from geofit.io.mapping import ColumnMapping, require_known
 from geofit.io.source import Source, as_source
 from geofit.io.tables import Table
 
@@ -184,8 +184,9 @@ def preview_table(source: Source, kind: str | None = None) -> TablePreview:
     -----
     Headers that are recognized: ``docs/formats_in.md``.
     """
-    if kind == "skip":
-        return _fixed(source, "skip")
+    if kind and kind not in SCHEMAS:
+        require_known(kind, source.name)
+        return _fixed(source, kind)
     journal = Journal()
     table = read_any_table(source, journal, kind or "")
     if kind is None:

@@ -10,7 +10,29 @@ from refusals import refused
 
 import geofit
 from geofit.data.errors import ArgumentError, SettingsError
-from geofit.implicit import Sphere, foot_points
+from geofit.implicit import (
+    Convolution,
+    CurveTube,
+    Cylinder,
+    FunctionField,
+    Lattice,
+    Plane,
+    RoundCones,
+    Sphere,
+    Torus,
+    TriangleMesh,
+    complement,
+    ellipsoid,
+    field_contours,
+    foot_points,
+    isosurface_of_blocks,
+    moved,
+    r_union,
+    smooth_union,
+    spherical_metaballs,
+    spline_of_field,
+    union,
+)
 
 XYZ = np.random.default_rng(0).uniform((500000, 3100000, 900), (500100, 3100100, 905), (40, 3))
 
@@ -186,3 +208,81 @@ def test_what_goes_wrong_inside_is_not_blamed_on_the_arguments():
 
     with pytest.raises(ZeroDivisionError, match="inside"):
         foot_points(Broken(np.zeros(3), 1.0), np.ones((2, 3)))
+
+
+BALL = Sphere(np.zeros(3), 1.0)
+LINE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0]])
+LATTICE = Lattice.around([-2] * 3, [2] * 3, cells=8)
+FIELDS = {
+    "sphere": BALL,
+    "cylinder": Cylinder([0, 0, 0], [0, 0, 1], 1.0),
+    "torus": Torus([0, 0, 0], [0, 0, 1], 2.0, 0.5),
+    "tube": CurveTube(LINE, 0.3),
+    "cones": RoundCones(LINE, 0.3),
+    "plane": Plane([0, 0, 0], [0, 0, 1]),
+    "quadric": ellipsoid([0, 0, 0], [1, 2, 3]),
+    "balls": spherical_metaballs(LINE, 1.0),
+    "convolution": Convolution(LINE[None, :2], 0.3),
+    "spline": spline_of_field(BALL, LATTICE),
+    "function": FunctionField(BALL.value, BALL.gradient),
+    "moved": moved(BALL, shift=[1, 0, 0]),
+    "complement": complement(BALL),
+    "union": union(BALL, BALL),
+    "smooth": smooth_union(BALL, BALL, radius=0.1),
+    "r": r_union(BALL, BALL),
+}
+
+
+@pytest.mark.parametrize("field", FIELDS.values(), ids=FIELDS)
+@pytest.mark.parametrize(
+    "xyz", [np.zeros(3), np.zeros((5, 2)), np.zeros((5, 1)), np.zeros((2, 3, 2)), None, "a", Odd()]
+)
+def test_fields_have_values_at_points_only(field, xyz):
+    """Two columns were read beyond their end by compiled loops, and one column counted three times."""
+    for call in (field.value, field.gradient, *([field.range_in] if hasattr(field, "range_in") else [])):
+        with pytest.raises(geofit.GeofitError):
+            call(*[xyz] * (2 if call.__name__ == "range_in" else 1))
+
+
+def test_boxes_have_two_corners_each():
+    with refused(geofit.errors.SettingsError, "implicit.corners-differ", lower=2, upper=3):
+        FIELDS["quadric"].range_in(np.zeros((2, 3)), np.ones((3, 3)))
+
+
+@pytest.mark.parametrize(
+    ("call", "argument", "needed"),
+    [
+        (lambda: Sphere([1, 2], 1.0), "centre", "(3,)"),
+        (lambda: ellipsoid([0, 0], [1, 2, 3]), "centre", "(3,)"),
+        (lambda: ellipsoid([0, 0, 0], [1, 2, 3], np.eye(2)), "rotation", "(3, 3)"),
+        (lambda: RoundCones(LINE, np.ones(5)), "radii", "(3,)"),
+        (lambda: TriangleMesh(np.zeros((5, 2)), [[0, 1, 2]]), "vertices", "(5, 3)"),
+        (lambda: field_contours(BALL, [0, 0], [1, 0, 0], [0, 1, 0], size=(1, 1), spacing=0.1), "origin", "(3,)"),
+        (lambda: isosurface_of_blocks(np.zeros(3), [[0, 0, 0]], LATTICE), "values", "(k, b, b, b)"),
+    ],
+)  # fmt: skip
+def test_shapes_are_those_of_the_docstring(call, argument, needed):
+    with refused(ArgumentError, "data.argument-shape-unfit", argument=argument, needed=needed):
+        call()
+
+
+def test_a_body_is_selected_by_one_truth_for_each_place():
+    data = geofit.BodyData(contacts=LINE)
+    assert len(data.select([True, False, True], [], []).contacts) == 2
+    for mask in (np.zeros((2, 2)), np.ones(5)):
+        with refused(geofit.errors.PointsError, "data.wrong-shape", name="contacts"):
+            data.select(mask, [], [])
+
+
+def test_a_kind_of_table_that_is_unknown_is_refused(tmp_path):
+    (tmp_path / "a.csv").write_text("x,y,z\n1,2,3\n")
+    with refused(geofit.errors.InputError, "io.mapping-kind-unknown"):
+        geofit.io.preview_table(geofit.io.Source(path=tmp_path / "a.csv"), kind="a")
+
+
+def test_nothing_is_no_surface_and_no_place(fit):
+    with refused(ArgumentError, "data.argument-type-unfit", argument="surface", given="None"):
+        geofit.HorizonFit(surface=None)
+    for call in (lambda: fit.elevation(None, 1), lambda: fit.surface.elevation(1, None), lambda: fit.distance(None)):
+        with refused(ArgumentError, "data.argument-type-unfit", given="None"):
+            call()

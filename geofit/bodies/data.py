@@ -127,8 +127,12 @@ class BodyData:
         return tuple(sorted(names - {""}))
 
     @arguments_checked
-    def select(self, contacts: NDArray[np.bool_], inside: NDArray[np.bool_], outside: NDArray[np.bool_]) -> BodyData:
-        """Return a part of the data."""
+    def select(self, contacts: ArrayLike, inside: ArrayLike, outside: ArrayLike) -> BodyData:
+        """Return a part of the data: what is true in an array of each kind."""
+        masks = {"contacts": contacts, "inside": inside, "outside": outside}
+        contacts, inside, outside = (
+            column(name, mask, len(getattr(self, name)), np.bool_) for name, mask in masks.items()
+        )
         return BodyData(
             self.contacts[contacts], self.inside[inside], self.outside[outside], self.normals[contacts],
             self.hole[contacts], self.inside_hole[inside], self.outside_hole[outside],

@@ -37,6 +37,7 @@ EXACT = 1e-3
 FINEST = 192
 
 
+@arguments_checked
 class ImplicitBody:
     """A closed body: the places where a field is negative. Coordinates are map coordinates in metres.
 
@@ -119,24 +120,20 @@ class ImplicitBody:
         off = abs(fine.volume - coarse.volume) / 3, abs(fine.area - coarse.area) / 3
         return Extent(fine.volume, fine.area, *off)
 
-    @arguments_checked
     def value(self, xyz: ArrayLike) -> Floats:
         """Return the field (n,) at (n, 3) places: negative inside; near the surface about the distance in metres."""
         return self.field.value(self._local(xyz))
 
-    @arguments_checked
     def gradient(self, xyz: ArrayLike) -> Floats:
         """Return the gradient (n, 3) of the field at (n, 3) places; it points outwards."""
         return self.field.gradient(self._local(xyz))
 
-    @arguments_checked
     def distance(self, xyz: ArrayLike) -> Floats:
         """Return the signed orthogonal distance (n,) of (n, 3) places to the surface, metres, positive outside."""
         from geofit.bodies.distance import body_distance
 
         return body_distance(self.field, self._local(xyz), self.spacing, lambda: self.overview)
 
-    @arguments_checked
     def triangulate(self, spacing: float | None = None) -> TriangleMesh:
         """Return the surface as a closed triangle mesh in map coordinates.
 
@@ -184,14 +181,12 @@ class ImplicitBody:
             )
         return isosurface(self.field, self._lattice(spacing), capped=True)
 
-    @arguments_checked
     def cut(self, surfaces: Mapping[str, Any] | Sequence[Any], spacing: float | None = None) -> tuple[BodyPiece, ...]:
         """Return the closed pieces into which surfaces cut the body; see :func:`geofit.bodies.cut.cut_body`."""
         from geofit.bodies.cut import cut_body
 
         return cut_body(self, surfaces, spacing)
 
-    @arguments_checked
     def write_step(self, path: str | PathLike[str], nurbs: bool = True, **stated: Unpack[StepFields]) -> SolidReadBack:
         """Write the body as a STEP AP242 solid, read it back, and return what the reader found.
 

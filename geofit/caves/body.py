@@ -41,6 +41,7 @@ STEEP = 60.0
 THIN = 0.05
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class PassageBody(OwnField):
     """The body of the passages of a survey; a field in the sense of :class:`geofit.implicit.Field`.
@@ -97,7 +98,9 @@ class PassageBody(OwnField):
 
     def range_in(self, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
         """Return bounds (k,), (k,) of the field in boxes with corners (k, 3)."""
-        return ranges(self.sweeps, self.blend, np.asarray(lower, float), np.asarray(upper, float))
+        from geofit.implicit.field import corners_of
+
+        return ranges(self.sweeps, self.blend, *corners_of(lower, upper))
 
     @property
     def name(self) -> str:

@@ -4,7 +4,7 @@
 
     GeofitError                  catch this one to catch them all
     ├── InputError               a file or a table cannot be used: file, row, column, value, remedy
-    ├── ArgumentError            an argument of another type than the function takes, unknown or missing
+    ├── ArgumentError            an argument of another type or shape than the function takes, unknown or missing
     ├── PointsError              arrays that are not a set of points (shape, NaN, infinities)
     ├── SettingsError            a setting out of its range
     ├── FitError                 these points cannot be fitted in this way
@@ -146,7 +146,7 @@ def _sentence(reason: Message, remedy: Message) -> Message:
 
 
 class ArgumentError(GeofitError, TypeError):
-    """An argument of another type than the function takes, one that it does not have, or one that is missing."""
+    """An argument of another type or shape than the function takes, unknown to it, or missing."""
 
 
 class PointsError(GeofitError, ValueError):

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import ast
 import os
+import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from difflib import get_close_matches
-from functools import cache, wraps
-from inspect import Parameter, Signature, signature
+from functools import cache, partial, wraps
+from inspect import Parameter, Signature, isfunction, signature
 from numbers import Integral, Real
 from typing import Any, Literal, NamedTuple, TypeVar, cast, get_origin
 
@@ -113,11 +114,15 @@ def _is_numeric(value: Any) -> bool:
 def _is_real(value: Any) -> bool:
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value.item()
-    return isinstance(value, Real) and value == value
+    try:
+        return isinstance(value, Real) and float(value) == value
+    except OverflowError:  # a whole number that a double does not hold
+        return False
 
 
 def _is_several(value: Any) -> bool:
-    return isinstance(value, Collection) and not isinstance(value, str | bytes | Mapping)
+    single = isinstance(value, str | bytes | Mapping) or getattr(value, "ndim", 1) == 0
+    return isinstance(value, Collection) and not single
 
 
 _ANY = _Kind(lambda _: True, message("data.anything-needed", "anything"))
@@ -126,8 +131,11 @@ _TEXT = _Kind(lambda value: isinstance(value, str), message("data.text-needed", 
 _NUMBERS = _Kind(
     _is_numeric, message("data.numbers-needed", "numbers, such as a list or an array of them"), number=True
 )
+_GIVEN = _NUMBERS._replace(fits=lambda value: value is not None, number=False)
 _WHOLE = _Kind(
-    lambda value: isinstance(value, Integral), message("data.whole-number-needed", "a whole number (int)"), number=True
+    lambda value: isinstance(value, Integral) and _is_real(value),
+    message("data.whole-number-needed", "a whole number (int)"),
+    number=True,
 )
 _CALL = _Kind(callable, message("data.function-needed", "a function"))
 _SEVERAL = _Kind(_is_several, message("data.several-needed", "several values, such as a list of them"))
@@ -158,16 +166,17 @@ _WRITTEN = {
 
 
 def arguments_checked(what: T) -> T:
-    """Refuse arguments that the signature of a function, or of a class, does not allow.
+    """Refuse arguments that the signature of a function, or of the public methods of a class, does not allow.
 
     Annotations are read as they are written: nothing is imported for them. Objects, texts and names are looked at
-    before the function starts; numbers only where it ends in an error that is not one of geofit's, because its own
-    checks of numbers say more.
+    before the function starts; numbers and the shapes that the docstring states (``xyz : (n, 3) array``) only where it
+    ends in an error that is not one of geofit's, because its own checks of numbers say more. What a class is made of
+    has these shapes in any case: it is used later.
 
     Raises
     ------
     ArgumentError
-        By the returned function, if an argument is unknown, missing, or of another type.
+        By the returned function, if an argument is unknown, missing, or of another type or shape.
     """
     function: Callable[..., Any] = what.__init__ if isinstance(what, type) else what  # type: ignore[misc]
     known = signature(function)
@@ -175,25 +184,78 @@ def arguments_checked(what: T) -> T:
     @cache
     def kinds() -> tuple[dict[str, tuple[_Kind, ...]], ...]:
         every = {one.name: tuple(_kinds(one.annotation, function)) for one in known.parameters.values()}
-        return {name: found for name, found in every.items() if not any(map(_of_numbers, found))}, every
+        before = {name: (_GIVEN,) if found == (_NUMBERS,) else found for name, found in every.items()}
+        return {name: found for name, found in before.items() if not any(map(_of_numbers, found))}, every
 
     @wraps(function)
     def call(*args: Any, **kwargs: Any) -> Any:
-        given = _bound(function, known, args, kwargs)
         before, every = kinds()
-        _compare(known, given, before)
+        if before:
+            _compare(known, _bound(function, known, args, kwargs), before)
         try:
-            return function(*args, **kwargs)
+            result = function(*args, **kwargs)
         except GeofitError:
             raise
-        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
+        except Exception:
+            given = _bound(function, known, args, kwargs)
             _compare(known, given, every)
+            _compare_shapes(what.__doc__, given)
             raise
+        if isinstance(what, type):
+            given = _bound(function, known, args, kwargs)
+            _compare(known, given, every)
+            _compare_shapes(what.__doc__, given, empty=True)
+        return result
 
     if isinstance(what, type):
+        for name, member in list(vars(what).items()):
+            if isfunction(member) and not name.startswith("_"):
+                setattr(what, name, arguments_checked(member))
         what.__init__ = call  # type: ignore[misc]
         return what
     return cast(T, call)
+
+
+#: A line of a docstring that states shapes: ``lower, upper : (k, 3) array``.
+_SHAPES = re.compile(
+    r"^ *(\w[\w, ]*) : (pair of )?((?:\([^()]*\)(?:, )?)+) array\S*(?: of \w+)?(?:, optional| or (\w+))?$", re.M
+)
+
+
+@cache
+def _shapes(doc: str) -> dict[str, tuple[tuple[str, ...], ...]]:
+    """Return the shapes that each argument may have, as its docstring states them."""
+    found = {}
+    for names, pair, shapes, other in _SHAPES.findall(doc):
+        several = [tuple(re.findall(r"[^, ][^,]*", shape)) for shape in re.findall(r"\(([^()]*)\)", shapes)]
+        for name in names.split(", "):
+            found[name] = (*((("2",) if pair else ()) + shape for shape in several), *([()] if other else []))
+    return found
+
+
+def _compare_shapes(doc: str | None, given: Mapping[str, Any], *, empty: bool = False) -> None:
+    """Refuse an array of another shape, unless it may be empty; a letter is the same number for all arguments."""
+    letters: dict[str, int] = {}
+    for name, shapes in _shapes(doc or "").items():
+        value = given.get(name)
+        if value is None or (empty and not np.size(value)):
+            continue
+        shape = np.shape(value)
+        if not any(len(shape) == len(one) and all(map(partial(_is_side, letters), one, shape)) for one in shapes):
+            needed = tuple(str(letters.get(side, side)) for side in shapes[0])
+            text = message(
+                "data.argument-shape-unfit",
+                "{argument} has shape {given}; an array of shape {needed} is needed.",
+                argument=name,
+                given=shape,
+                needed=Untranslated(f"({', '.join(needed)}{',' * (len(needed) == 1)})"),
+            )
+            raise ArgumentError(text)
+
+
+def _is_side(letters: dict[str, int], stated: str, length: int) -> bool:
+    """Whether an axis has the length that is stated: a number, a letter, or a sum that is not looked at."""
+    return length == (int(stated) if stated.isdigit() else letters.setdefault(stated, length))
 
 
 def _of_numbers(kind: _Kind) -> bool:

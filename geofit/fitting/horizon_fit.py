@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.checks.check import check, judged_by
 from geofit.data.accuracy import Accuracy, Conflict, Partition, ReadBack
-from geofit.data.given import arguments_checked, keywords_known
+from geofit.data.given import arguments_checked
 from geofit.data.picture import LEVELS, card, deviation_colours, plan_svg
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
@@ -33,7 +33,7 @@ __all__ = ["HorizonFit", "fit_of"]
 Floats = NDArray[np.float64]
 
 
-@keywords_known
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class HorizonFit:
     """A surface with the points it was fitted to (or is judged by), and its check.
@@ -137,7 +137,6 @@ class HorizonFit:
         """Number of control points; rows that two patches share count once for each."""
         return sum(patch.control.shape[0] * patch.control.shape[1] for patch in self.patches)
 
-    @arguments_checked
     def elevation(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """Return the height at map coordinates in metres, nan outside; arrays broadcast.
 
@@ -145,32 +144,26 @@ class HorizonFit:
         """
         return self.surface.elevation(x, y)
 
-    @arguments_checked
     def project(self, xyz: ArrayLike) -> Projection:
         """Return the foot points of (n, 3) map coordinates, with signed orthogonal distances in metres."""
         return self.surface.project(xyz)
 
-    @arguments_checked
     def distance(self, xyz: ArrayLike) -> Floats:
         """Return the signed orthogonal distance of (n, 3) map coordinates, metres, positive above."""
         return self.surface.distance(xyz)
 
-    @arguments_checked
     def triangulate(self, tolerance: Tolerance = 0.05) -> Mesh:
         """Return triangles within a tolerance (m), trimmed to where the surface ends."""
         return self.surface.triangulate(tolerance)
 
-    @arguments_checked
     def adjust(self, patch: str, i: int, j: int, dz: float, aside: Sequence[float] = (0.0, 0.0, 0.0)) -> HorizonFit:
         """Return the fit with one control point moved; see :func:`geofit.fitting.edit.adjust`."""
         return edit.adjust(self, patch, i, j, dz, aside)
 
-    @arguments_checked
     def move_to(self, point: int | ArrayLike, share: float = 1.0) -> HorizonFit:
         """Return the fit moved to one of its points, or to a place; see :func:`geofit.fitting.edit.move_to`."""
         return edit.move_to(self, point, share)
 
-    @arguments_checked
     def weigh(self, patch: str, i: int, j: int, weight: float) -> HorizonFit:
         """Return the fit with another weight of one control point; see :func:`geofit.fitting.edit.weigh`."""
         return edit.weigh(self, patch, i, j, weight)
@@ -181,7 +174,6 @@ class HorizonFit:
 
         return to_shape(self)
 
-    @arguments_checked
     def write_step(
         self, path: str | PathLike[str], *, author: str = "", organisation: str = "", origin: Origin = "map"
     ) -> ReadBack:
@@ -206,7 +198,6 @@ class HorizonFit:
         """Return the fit with its surface measured and checked anew."""
         return replace(self, accuracy=check(self, conflicts, notes))
 
-    @arguments_checked
     def judged_by(self, epsilon: float) -> HorizonFit:
         """Return the fit judged by another control error, metres: the same surface, and perhaps another verdict."""
         judged = replace(self, settings=replace(self.settings, epsilon=epsilon))

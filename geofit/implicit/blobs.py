@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.errors import SettingsError
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
-from geofit.implicit.field import Box, points_of
+from geofit.implicit.field import Box, corners_of, points_of
 from geofit.implicit.kernels import Potential, potential
 
 __all__ = ["Metaballs", "spherical_metaballs"]
@@ -28,6 +28,7 @@ Ints = NDArray[np.int64]
 MOST_CELLS = 64
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class Metaballs:
     """phi = (T - F) / g0 with F = sum b_i f(|A_i (x - c_i)|^2), in metres near the surface of a lone ball.
@@ -142,14 +143,14 @@ class Metaballs:
         """Return phi at (n, 3) points."""
         from geofit.implicit.blob_loops import density
 
-        total = density(np.ascontiguousarray(xyz, float), *self._cells, *self._balls)
+        total = density(points_of(xyz), *self._cells, *self._balls)
         return np.asarray((self.threshold - total) / self.slope_scale)
 
     def gradient(self, xyz: Floats) -> Floats:
         """Return the gradient of phi at (n, 3) points."""
         from geofit.implicit.blob_loops import density_gradient
 
-        total = density_gradient(np.ascontiguousarray(xyz, float), *self._cells, *self._balls)
+        total = density_gradient(points_of(xyz), *self._cells, *self._balls)
         return np.asarray(-total / self.slope_scale)
 
     @property
@@ -175,9 +176,8 @@ class Metaballs:
         """Return bounds of phi in boxes: each potential is monotone in q, and q is bounded in a box."""
         from geofit.implicit.blob_loops import density_range
 
-        lowest, highest = density_range(
-            np.ascontiguousarray(lower, float), np.ascontiguousarray(upper, float), *self._balls
-        )
+        lower, upper = corners_of(lower, upper)
+        lowest, highest = density_range(lower, upper, *self._balls)
         return (self.threshold - highest) / self.slope_scale, (self.threshold - lowest) / self.slope_scale
 
 

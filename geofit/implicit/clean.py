@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.given import arguments_checked
 from geofit.implicit.mesh import TriangleMesh
 
 __all__ = ["collapse_slivers"]
@@ -19,6 +20,7 @@ SHORT = 0.1
 PASSES = 20
 
 
+@arguments_checked
 def collapse_slivers(mesh: TriangleMesh, smallest: float, spacing: float) -> TriangleMesh:
     """Remove the triangles below an area by collapsing their short edges and swapping their long ones.
 

@@ -50,7 +50,7 @@ def field_contours(
         A corner of the rectangle, metres.
     along, up : (3,) array
         Directions of its sides, orthogonal, of any length.
-    size : tuple of 2 float
+    size : (2,) array_like
         Lengths of its sides along both, metres.
     spacing : float
         Largest distance of the nodes at which phi is sampled, metres.

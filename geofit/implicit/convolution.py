@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
-from geofit.implicit.field import Box
+from geofit.implicit.field import Box, corners_of, points_of
 
 __all__ = ["Convolution", "kernel_integral"]
 
@@ -99,6 +100,7 @@ def kernel_integral(
     return value, 1 / du**2 - 1 / dv**2, scale * by_p2
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class Convolution:
     """phi = (1 - F) / g0 about segments; each alone and without ends has the radius given for it.
@@ -180,6 +182,7 @@ class Convolution:
 
     def value(self, xyz: Floats) -> Floats:
         """Return phi at (n, 3) points."""
+        xyz = points_of(xyz)
         total = np.zeros(len(xyz))
         for point, segment in self._pairs(xyz):
             value = self._integrals(xyz[point], segment)[0]
@@ -188,6 +191,7 @@ class Convolution:
 
     def gradient(self, xyz: Floats) -> Floats:
         """Return the gradient of phi at (n, 3) points."""
+        xyz = points_of(xyz)
         total = np.zeros((len(xyz), 3))
         for point, segment in self._pairs(xyz):
             _, by_x, by_rho2, across = self._integrals(xyz[point], segment)
@@ -287,6 +291,7 @@ class Convolution:
 
     def range_in(self, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
         """Return bounds of phi in boxes, by the slope that the segments near each can cause."""
+        lower, upper = corners_of(lower, upper)
         reach = self._slopes(lower, upper) / self._scale * np.linalg.norm(upper - lower, axis=1) / 2
         centre = self.value((lower + upper) / 2)
         return centre - reach, centre + reach

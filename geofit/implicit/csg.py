@@ -33,6 +33,7 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class _Complement:
     field: Field
@@ -56,6 +57,7 @@ class _Complement:
         return -high, -low
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class _Union:
     fields: tuple[Field, ...]
@@ -84,6 +86,7 @@ class _Union:
         return np.min(low, axis=0), np.min(high, axis=0)
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class _SmoothUnion:
     """min(f, g) - k h^3 / 6 with h = max(1 - |f - g| / k, 0): C2 across f = g and at |f - g| = k."""
@@ -118,6 +121,7 @@ class _SmoothUnion:
         return np.minimum(a, c) - self.radius / 6, np.minimum(b, d)
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class _RUnion:
     """f + g - sqrt(f^2 + g^2) (Rvachev): smooth but where both are zero."""
@@ -152,6 +156,7 @@ class _RUnion:
         return np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high)
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class _Within:
     """A field in a smaller box than its own: that of an intersection."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from geofit.data.errors import SettingsError
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
-from geofit.implicit.field import Box
+from geofit.implicit.field import Box, points_of
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -64,7 +64,15 @@ def _directions(offset: Floats) -> Floats:
 @arguments_checked
 @dataclass(frozen=True, eq=False)
 class Sphere(_Distance):
-    """d(x, centre) - radius, in metres."""
+    """d(x, centre) - radius, in metres.
+
+    Parameters
+    ----------
+    centre : (3,) array
+        Centre, metres.
+    radius : float
+        Radius, metres.
+    """
 
     centre: Floats
     radius: float
@@ -75,11 +83,11 @@ class Sphere(_Distance):
 
     def value(self, xyz: Floats) -> Floats:
         """Return signed distances of (n, 3) points."""
-        return np.asarray(np.linalg.norm(xyz - self.centre, axis=1) - self.radius)
+        return np.asarray(np.linalg.norm(points_of(xyz) - self.centre, axis=1) - self.radius)
 
     def gradient(self, xyz: Floats) -> Floats:
         """Return unit vectors from the centre."""
-        return _directions(xyz - self.centre)
+        return _directions(points_of(xyz) - self.centre)
 
     @property
     def bounds(self) -> Box:
@@ -120,7 +128,7 @@ class Cylinder(_Distance):
         return _directions(self._across(xyz))
 
     def _across(self, xyz: Floats) -> Floats:
-        offset = xyz - self.point
+        offset = points_of(xyz) - self.point
         return np.asarray(offset - (offset @ self.direction)[:, None] * self.direction)
 
     @property
@@ -171,7 +179,7 @@ class Torus(_Distance):
 
     def _parts(self, xyz: Floats) -> tuple[Floats, Floats]:
         """Offsets from the centre in the plane of the circle, and heights above it."""
-        offset = xyz - self.centre
+        offset = points_of(xyz) - self.centre
         height = offset @ self.axis
         return offset - height[:, None] * self.axis, height
 
@@ -225,11 +233,11 @@ class CurveTube(_Distance):
 
     def value(self, xyz: Floats) -> Floats:
         """Return signed distances of (n, 3) points."""
-        return np.asarray(np.linalg.norm(xyz - self._foot(xyz), axis=1) - self.radius)
+        return np.asarray(np.linalg.norm(points_of(xyz) - self._foot(xyz), axis=1) - self.radius)
 
     def gradient(self, xyz: Floats) -> Floats:
         """Return unit vectors from the curve."""
-        return _directions(xyz - self._foot(xyz))
+        return _directions(points_of(xyz) - self._foot(xyz))
 
     def _foot(self, xyz: Floats) -> Floats:
         curve, (first, second) = self.curve, self._derivatives
@@ -264,7 +272,7 @@ class RoundCones(_Distance):
     ----------
     points : (n, 3) array
         Centre line in order, at least 2 points.
-    radii : (n,) array
+    radii : (n,) array or float
         Radius at each point, metres.
     """
 
@@ -289,13 +297,13 @@ class RoundCones(_Distance):
         """Return signed distances of (n, 3) points; inside the union a bound of them."""
         from geofit.implicit.cone_loops import nearest_cone
 
-        return np.asarray(nearest_cone(np.ascontiguousarray(xyz, float), self.points, self.radii)[0])
+        return np.asarray(nearest_cone(points_of(xyz), self.points, self.radii)[0])
 
     def gradient(self, xyz: Floats) -> Floats:
         """Return unit vectors away from the nearest cone."""
         from geofit.implicit.cone_loops import nearest_cone
 
-        return np.asarray(nearest_cone(np.ascontiguousarray(xyz, float), self.points, self.radii)[1])
+        return np.asarray(nearest_cone(points_of(xyz), self.points, self.radii)[1])
 
     @property
     def bounds(self) -> Box:

@@ -23,6 +23,7 @@ __all__ = [
     "FunctionField",
     "RangedField",
     "box_of",
+    "corners_of",
     "moved",
     "normals",
     "points_of",
@@ -65,6 +66,7 @@ class RangedField(Field, Protocol):
         ...
 
 
+@arguments_checked
 def range_in(field: Field, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
     """Return bounds of the values of a field in boxes.
 
@@ -81,6 +83,7 @@ def range_in(field: Field, lower: Floats, upper: Floats) -> tuple[Floats, Floats
     (k,) array, (k,) array
         No value in box i is below the first or above the second.
     """
+    lower, upper = corners_of(lower, upper)
     if isinstance(field, RangedField):
         return field.range_in(lower, upper)
     if not np.isfinite(field.lipschitz):
@@ -90,6 +93,7 @@ def range_in(field: Field, lower: Floats, upper: Floats) -> tuple[Floats, Floats
     return centre - reach, centre + reach
 
 
+@arguments_checked
 def normals(field: Field, xyz: ArrayLike) -> Floats:
     """Return unit normals at (n, 3) points, outwards; zero where the gradient vanishes."""
     gradient = field.gradient(points_of(xyz))
@@ -98,14 +102,14 @@ def normals(field: Field, xyz: ArrayLike) -> Floats:
 
 
 def points_of(xyz: ArrayLike) -> Floats:
-    """Return points as (n, 3) array of floats.
+    """Return points as (n, 3) array of floats, row by row in memory.
 
     Raises
     ------
     SettingsError
         If the array has another shape.
     """
-    points = np.asarray(xyz, float)
+    points = np.ascontiguousarray(xyz, float)
     if points.ndim != 2 or points.shape[1] != 3:
         raise SettingsError(
             message(
@@ -115,6 +119,27 @@ def points_of(xyz: ArrayLike) -> Floats:
             )
         )
     return points
+
+
+def corners_of(lower: ArrayLike, upper: ArrayLike) -> Box:
+    """Return the corners of boxes as two (k, 3) arrays of floats.
+
+    Raises
+    ------
+    SettingsError
+        If an array has another shape, or there are more corners of one kind.
+    """
+    low, high = points_of(lower), points_of(upper)
+    if len(low) != len(high):
+        raise SettingsError(
+            message(
+                "implicit.corners-differ",
+                "{lower} lower and {upper} upper corners do not make boxes: give one of each for every box",
+                lower=len(low),
+                upper=len(high),
+            )
+        )
+    return low, high
 
 
 def box_of(lower: ArrayLike, upper: ArrayLike) -> Box:
@@ -139,6 +164,7 @@ def box_of(lower: ArrayLike, upper: ArrayLike) -> Box:
     return low, high
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class FunctionField:
     """A field given by two functions of (n, 3) points.
@@ -162,13 +188,14 @@ class FunctionField:
 
     def value(self, xyz: Floats) -> Floats:
         """Return the values at (n, 3) points."""
-        return self.function(xyz)
+        return self.function(points_of(xyz))
 
     def gradient(self, xyz: Floats) -> Floats:
         """Return the gradients at (n, 3) points."""
-        return self.slope(xyz)
+        return self.slope(points_of(xyz))
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class _Moved:
     field: Field
@@ -176,10 +203,10 @@ class _Moved:
     shift: Floats
 
     def value(self, xyz: Floats) -> Floats:
-        return self.field.value((xyz - self.shift) @ self.rotation)
+        return self.field.value((points_of(xyz) - self.shift) @ self.rotation)
 
     def gradient(self, xyz: Floats) -> Floats:
-        return self.field.gradient((xyz - self.shift) @ self.rotation) @ self.rotation.T
+        return self.field.gradient((points_of(xyz) - self.shift) @ self.rotation) @ self.rotation.T
 
     @property
     def bounds(self) -> Box:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.errors import SettingsError
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
-from geofit.implicit.field import Box, Field
+from geofit.implicit.field import Box, Field, corners_of, points_of
 from geofit.implicit.lattice import Lattice, sample
 
 __all__ = ["SplineGrid", "spline_grid", "spline_of_field"]
@@ -22,6 +22,7 @@ Floats = NDArray[np.float64]
 TAIL = 28
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class SplineGrid:
     """phi(x) = sum c_ijk b(x/h - i) b(y/h - j) b(z/h - k) with cubic B-splines b; made by :func:`spline_grid`.
@@ -72,7 +73,7 @@ class SplineGrid:
 
     def _places(self, xyz: Floats) -> tuple[Floats, Floats]:
         """Points in units of the spacing, moved into the box, and how far they were beyond it, metres."""
-        raw = (np.asarray(xyz, float) - self.lattice.origin) / self.lattice.spacing
+        raw = (points_of(xyz) - self.lattice.origin) / self.lattice.spacing
         places = np.clip(raw, 0, np.array(self.lattice.shape) - 1.0)
         return places, (raw - places) * self.lattice.spacing
 
@@ -96,7 +97,7 @@ class SplineGrid:
         """Return bounds of phi in boxes: a B-spline stays between its coefficients."""
         from geofit.implicit.grid_loops import coefficient_range
 
-        (low, near), (high, far) = self._places(lower), self._places(upper)
+        (low, near), (high, far) = map(self._places, corners_of(lower, upper))
         cells = np.array(self.lattice.shape) - 2
         first = np.minimum(np.floor(low).astype(np.int64), cells)
         last = np.minimum(np.maximum(np.ceil(high).astype(np.int64) - 1, first), cells) + 3

@@ -120,6 +120,7 @@ def isosurface_of_samples(values: NDArray[np.floating], lattice: Lattice, *, cap
     return collapse_slivers(mesh, SLIVER * lattice.spacing**2, lattice.spacing) if capped else mesh
 
 
+@arguments_checked
 def isosurface_of_blocks(values: NDArray[np.floating], blocks: Ints, lattice: Lattice) -> TriangleMesh:
     """Return the surface on which samples of some blocks are zero, linear along the edges of the lattice.
 
@@ -156,6 +157,7 @@ def _linear(crossed: _Crossed, lattice: Lattice) -> TriangleMesh:
     return TriangleMesh(start, crossed.triangles)
 
 
+@arguments_checked
 def open_sides(mesh: TriangleMesh, lattice: Lattice) -> tuple[str, ...]:
     """Return the sides of the box, such as "-x" or "+z", at which a mesh ends; empty for a closed one."""
     ends = mesh.vertices[mesh.boundary_edges].mean(axis=1)

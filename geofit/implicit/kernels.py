@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 
 __all__ = ["POTENTIALS", "Potential", "potential"]
@@ -22,6 +23,7 @@ Floats = NDArray[np.float64]
 CUT = 1e-6
 
 
+@arguments_checked
 @dataclass(frozen=True)
 class Potential:
     """A radial potential f(q), q = (r/R)^2.
@@ -153,6 +155,7 @@ POTENTIALS = {
 }
 
 
+@arguments_checked
 def potential(name: str) -> Potential:
     """Return a potential by name: "smooth" is (1-q)^3, which is C2 at its rim.
 

@@ -20,6 +20,7 @@ Floats = NDArray[np.float64]
 BATCH = 1 << 18
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class Lattice:
     """Nodes ``origin + spacing * (i, j, k)``.
@@ -132,6 +133,7 @@ class Lattice:
         return Lattice(self.origin, 2 * self.spacing, ((nx + 1) // 2, (ny + 1) // 2, (nz + 1) // 2))
 
 
+@arguments_checked
 def sample(field: Field, lattice: Lattice) -> Floats:
     """Return the values of a field at all nodes of a lattice, shape ``lattice.shape``."""
     x, y, z = lattice.axes

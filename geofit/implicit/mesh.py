@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 
 __all__ = ["TriangleMesh"]
@@ -17,6 +18,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class TriangleMesh:
     """Vertices and triangles; the normals of a body's triangles point outwards.
@@ -179,6 +181,12 @@ class TriangleMesh:
         return tuple(self.only(self.component_of == i) for i in range(self.components))
 
     def only(self, keep: NDArray[np.bool_]) -> TriangleMesh:
-        """Return a part of the triangles, with the vertices that it uses."""
+        """Return a part of the triangles, with the vertices that it uses.
+
+        Parameters
+        ----------
+        keep : (m,) array of bool
+            The part: true for each of its triangles.
+        """
         used, triangles = np.unique(self.triangles[keep], return_inverse=True)
         return TriangleMesh(self.vertices[used], triangles.reshape(-1, 3))

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.errors import FitError, SettingsError
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
-from geofit.implicit.field import Box, box_of, points_of
+from geofit.implicit.field import Box, box_of, corners_of, points_of
 
 __all__ = ["Plane", "Quadric", "ellipsoid", "fit_quadric", "quadric_from_coefficients"]
 
@@ -73,11 +73,11 @@ class Plane:
 
     def value(self, xyz: Floats) -> Floats:
         """Return signed distances of (n, 3) points."""
-        return np.asarray((xyz - self.point) @ self.normal)
+        return np.asarray((points_of(xyz) - self.point) @ self.normal)
 
     def gradient(self, xyz: Floats) -> Floats:
         """Return the normal at each of (n, 3) points."""
-        return np.tile(self.normal, (len(xyz), 1))
+        return np.tile(self.normal, (len(points_of(xyz)), 1))
 
     @property
     def bounds(self) -> Box:
@@ -90,6 +90,7 @@ class Plane:
         return 1.0
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class Quadric:
     """f = X^T Q X.
@@ -124,12 +125,13 @@ class Quadric:
     def value(self, xyz: Floats) -> Floats:
         """Return f at (n, 3) points."""
         a, b, c = self._parts
+        xyz = points_of(xyz)
         return np.asarray(((xyz @ a + 2 * b) * xyz).sum(axis=1) + c)
 
     def gradient(self, xyz: Floats) -> Floats:
         """Return 2 (Q X) without its last component."""
         a, b, _ = self._parts
-        return np.asarray(2 * (xyz @ a + b))
+        return np.asarray(2 * (points_of(xyz) @ a + b))
 
     @property
     def bounds(self) -> Box:
@@ -150,6 +152,7 @@ class Quadric:
 
     def range_in(self, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
         """Return bounds of f in boxes, by the gradient at their centres and the largest curvature."""
+        lower, upper = corners_of(lower, upper)
         centre, half = (lower + upper) / 2, (upper - lower) / 2
         reach = (np.abs(self.gradient(centre)) * half).sum(axis=1)
         reach += np.abs(np.linalg.eigvalsh(self._parts[0])).max() * (half**2).sum(axis=1)
@@ -188,6 +191,7 @@ class Quadric:
         return centre, 0.0 if abs(constant) <= ZERO * size else constant, linear
 
 
+@arguments_checked
 def quadric_from_coefficients(coefficients: ArrayLike, region: Box | None = None) -> Quadric:
     """Return the quadric Ax^2 + 2Bxy + 2Cxz + 2Dx + Ey^2 + 2Fyz + 2Gy + Hz^2 + 2Iz + J.
 

@@ -51,6 +51,7 @@ class Extent:
     area_error: float = 0.0
 
 
+@arguments_checked
 def extent_of_samples(values: NDArray[np.floating], lattice: Lattice) -> Extent:
     """Return volume and area of what is negative, with the samples linear in six tetrahedra a cell.
 

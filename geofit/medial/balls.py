@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.bodies.implicit_body import OwnField
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.medial.kernel import STIFFNESS, reach
 
@@ -22,6 +23,7 @@ __all__ = ["MetaballBody"]
 Floats = NDArray[np.float64]
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class MetaballBody(OwnField):
     """The body on which the fields of metaballs sum to 1 or more.
@@ -119,7 +121,9 @@ class MetaballBody(OwnField):
 
     def range_in(self, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
         """Return bounds (k,), (k,) of the field in boxes with corners (k, 3)."""
-        low, high = self._cells.range_in(np.asarray(lower, float), np.asarray(upper, float))
+        from geofit.implicit.field import corners_of
+
+        low, high = self._cells.range_in(*corners_of(lower, upper))
         return self._scale * (1.0 - high), self._scale * (1.0 - low)
 
     @property
@@ -137,7 +141,7 @@ class MetaballBody(OwnField):
         centres, radii = self.centre.copy(), self.radius.copy()
         self._require(i)
         if centre is not None:
-            centres[i] = centre
+            centres[i] = _points(np.asarray(centre, float)[None])
         if radius is not None:
             radii[i] = radius
         return replace(self, centre=centres, radius=radii)
@@ -150,7 +154,9 @@ class MetaballBody(OwnField):
     def plus(self, centre: ArrayLike, radius: float) -> Self:
         """Return the body with one more ball at a centre (3,), metres; it is the last one."""
         return replace(
-            self, centre=np.vstack([self.centre, np.asarray(centre, float)]), radius=np.r_[self.radius, radius]
+            self,
+            centre=np.vstack([self.centre, _points(np.asarray(centre, float)[None])]),
+            radius=np.r_[self.radius, radius],
         )
 
     def _require(self, i: int) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.errors import SettingsError
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
-from geofit.implicit.field import Box
+from geofit.implicit.field import Box, points_of
 from geofit.morphing.errors import MorphError
 from geofit.surfaces.protocol import HasElevation
 
@@ -26,6 +26,7 @@ Floats = NDArray[np.float64]
 CELLS, MOST = 200, 4000
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class BetweenSurfaces:
     """The body below one surface and above another, within an area; a field about ``origin``, negative inside.
@@ -76,7 +77,7 @@ class BetweenSurfaces:
         return np.asarray(np.take_along_axis(gradients, values.argmax(axis=0)[None, :, None], axis=0)[0])
 
     def _parts(self, xyz: Floats) -> tuple[Floats, Floats]:
-        (low, high) = self.box
+        xyz, (low, high) = points_of(xyz), self.box
         x, y = (np.clip(xyz[:, k], low[k], high[k]) for k in (0, 1))
         beyond = np.hypot(xyz[:, 0] - x, xyz[:, 1] - y)
         values, gradients = [], []

@@ -24,7 +24,7 @@ from geofit.bodies.implicit_body import OwnField
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
-from geofit.implicit.field import Box, Field
+from geofit.implicit.field import Box, Field, points_of
 from geofit.implicit.isosurface import isosurface
 from geofit.implicit.lattice import Lattice
 from geofit.implicit.mesh import TriangleMesh
@@ -156,6 +156,7 @@ class ContactField:
         return np.where(rock == 0, high_, low), np.where(rock == voxels, low, high_)
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class PoreSurface(OwnField):
     """The pore space as a body. It is a :class:`geofit.implicit.field.Field` itself.
@@ -180,11 +181,11 @@ class PoreSurface(OwnField):
 
     def value(self, xyz: ArrayLike) -> Floats:
         """Return the field at (n, 3) points in metres from the low corner: negative in pores."""
-        return self.field.value(np.asarray(xyz, float))
+        return self.field.value(points_of(xyz))
 
     def gradient(self, xyz: ArrayLike) -> Floats:
         """Return the gradient at (n, 3) points; it points into the rock."""
-        return self.field.gradient(np.asarray(xyz, float))
+        return self.field.gradient(points_of(xyz))
 
     def __repr__(self) -> str:
         size = " x ".join(str(n) for n in self.shape)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.columns import measurable_places
-from geofit.data.given import arguments_checked, keywords_known
+from geofit.data.given import arguments_checked
 from geofit.geometry.mesh import Mesh, Tolerance
 from geofit.geometry.mesh_projection import mesh_elevation, nearest_on_mesh
 from geofit.geometry.projection import Projection
@@ -20,7 +20,7 @@ __all__ = ["MeshSurface"]
 Floats = NDArray[np.float64]
 
 
-@keywords_known
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class MeshSurface:
     """A triangle mesh of a file as a surface; it has no patches."""
@@ -61,22 +61,18 @@ class MeshSurface:
         """Box of the vertices, map coordinates."""
         return self.mesh.xyz.min(axis=0), self.mesh.xyz.max(axis=0)
 
-    @arguments_checked
     def elevation(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """Return the height at map coordinates in metres, nan outside, the highest of several; arrays broadcast."""
         return mesh_elevation(self.mesh, x, y)
 
-    @arguments_checked
     def project(self, xyz: ArrayLike) -> Projection:
         """Return the nearest triangles of (n, 3) map coordinates; they have no parameters."""
         return nearest_on_mesh(self.mesh, measurable_places(xyz) - self.origin)
 
-    @arguments_checked
     def distance(self, xyz: ArrayLike) -> Floats:
         """Return the signed distance of (n, 3) map coordinates to the nearest triangle, metres, positive above."""
         return self.project(xyz).distance
 
-    @arguments_checked
     def triangulate(self, tolerance: Tolerance = 0.05) -> Mesh:
         """Return the mesh itself, whatever the tolerance."""
         return self.mesh

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.columns import measurable_places
-from geofit.data.given import arguments_checked, keywords_known
+from geofit.data.given import arguments_checked
 from geofit.data.threads import one_thread
 from geofit.geometry.elevation import elevation
 from geofit.geometry.mesh import Mesh, Tolerance, triangulate, trim_to_outline
@@ -21,7 +21,7 @@ __all__ = ["PatchSurface"]
 Floats = NDArray[np.float64]
 
 
-@keywords_known
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class PatchSurface:
     """NURBS patches that share edges.
@@ -64,7 +64,6 @@ class PatchSurface:
         poles = np.concatenate([patch.control.reshape(-1, 3) for patch in self.patches]) + self.origin
         return poles.min(axis=0), poles.max(axis=0)
 
-    @arguments_checked
     def elevation(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """Return the height at map coordinates in metres, nan outside; arrays broadcast.
 
@@ -72,17 +71,14 @@ class PatchSurface:
         """
         return elevation(self.patches, self.origin, self.outline, x, y)
 
-    @arguments_checked
     def project(self, xyz: ArrayLike) -> Projection:
         """Return the foot points of (n, 3) map coordinates; see :func:`geofit.geometry.projection.project`."""
         return project(self.patches, measurable_places(xyz) - self.origin)
 
-    @arguments_checked
     def distance(self, xyz: ArrayLike) -> Floats:
         """Return the signed orthogonal distance of (n, 3) map coordinates, metres, positive above."""
         return self.project(xyz).distance
 
-    @arguments_checked
     def triangulate(self, tolerance: Tolerance = 0.05) -> Mesh:
         """Return triangles within a tolerance (m); see :func:`geofit.geometry.mesh.triangulate`."""
         # A second thread waits longer for the many small products than it works.
