@@ -27,7 +27,7 @@ MEASURE = ROOT / "benchmarks" / "peers" / "measure.py"
 #: Points at which errors are compared, and sets of each kind of truth.
 COMPARED, SEEDS = 1_000, 3
 DECADES = [10**k for k in range(2, 8)]
-#: Longest fit of a growing n, s of the processor, as it is foreseen from the last one.
+#: Longest fit of a growing n, s of the processor, as it is foreseen from the last one of another program.
 LONGEST = 20.0
 #: fit_horizon keeps its points with their rows and labels; beyond this fit_cloud is what reads them.
 LARGEST = {"geofit": 10**6, "geofit_cloud": 10**7}
@@ -77,8 +77,8 @@ def growth(folder: Path, peers: str) -> dict[str, dict[int, Figures]]:
         np.savez(path, **sample("hills", n, 0))
         for tool in [tool for tool in TOOLS if tool in left and n >= SMALLEST.get(tool, 0)]:
             last = found[tool].get(n // 10)
-            late = last is not None and last["seconds"] * 10.0 ** TOOLS[tool].power > LONGEST
-            figures = None if late or n > LARGEST.get(tool, n) else run(tool, [path], peers)
+            foreseen = 0.0 if last is None or tool in LARGEST else last["seconds"] * 10.0 ** TOOLS[tool].power
+            figures = None if foreseen > LONGEST or n > LARGEST.get(tool, n) else run(tool, [path], peers)
             if figures is None:
                 left.discard(tool)
             else:
