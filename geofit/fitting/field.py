@@ -331,8 +331,8 @@ def smooth(
     found = slope.directions @ slopes
     if turned:
         net, found = np.swapaxes(net, 0, 1), found[[0, 2, 1]]
-    columns = given.value.shape[1:]
-    return Smoothed(restricted(space, net.reshape(wide.size, *columns)), found.reshape(3, *columns))
+    single = given.value.shape[1:]
+    return Smoothed(restricted(space, net.reshape(wide.size, *single)), found.reshape(3, *single))
 
 
 def _exchanged(trend: Floats | None) -> Floats | None:

@@ -43,7 +43,8 @@ class Observations:
         own = space.turned if turned else space
         if self._moments is None or not self._moments.serve(own.knots_u, own.knots_v):
             spaces = (own, *self._foreseen)
-            lines = (np.unique(np.concatenate([getattr(one, k) for one in spaces])) for k in ("knots_u", "knots_v"))
-            self._moments = Moments.of(*lines, own.degree, self.plane, self.value, self.weight)
+            lines_u = np.unique(np.concatenate([one.knots_u for one in spaces]))
+            lines_v = np.unique(np.concatenate([one.knots_v for one in spaces]))
+            self._moments = Moments.of(lines_u, lines_v, own.degree, self.plane, self.value, self.weight)
         moments = self._moments.turned if turned else self._moments
         return space.equations(moments.on(space.knots_u, space.knots_v))
