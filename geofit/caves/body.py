@@ -98,9 +98,9 @@ class PassageBody(OwnField):
 
     def range_in(self, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
         """Return bounds (k,), (k,) of the field in boxes with corners (k, 3)."""
-        from geofit.implicit.field import corners_of
+        from geofit.implicit.field import box_corners
 
-        return ranges(self.sweeps, self.blend, *corners_of(lower, upper))
+        return ranges(self.sweeps, self.blend, *box_corners(lower, upper))
 
     @property
     def name(self) -> str:

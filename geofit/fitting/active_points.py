@@ -13,10 +13,10 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.density import CLOUD
 from geofit.fitting.field import plane_trend, relative_noise
 from geofit.fitting.likelihood import plane_coefficients
-from geofit.fitting.observations import Observations
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
+from geofit.fitting.weighted_points import WeightedPoints
 from geofit.splines.tensor import TensorSpace
 
 __all__ = ["Data", "degree_for", "gather_points"]
@@ -43,9 +43,9 @@ class Data:
     slopes: Slopes | None = None
 
     @cached_property
-    def observations(self) -> Observations:
+    def weighted(self) -> WeightedPoints:
         """The points by the weights of their noise."""
-        return Observations(self.plane, self.value, inverse_squares(self.noise))
+        return WeightedPoints(self.plane, self.value, inverse_squares(self.noise))
 
     def whole(self) -> Data:
         """Return the same points, all places held."""

@@ -21,10 +21,10 @@ from geofit.data.errors import FitError
 from geofit.data.long_arrays import BLOCK, Rows, blocks, covariance, everywhere, spread, sum_squares
 from geofit.data.messages import message
 from geofit.fitting.likelihood import FINEST, UNSOLVABLE, Likelihood, Slope, plane_coefficients
-from geofit.fitting.observations import Observations
 from geofit.fitting.optimum import maximize_over_noise
 from geofit.fitting.slopes import Slopes
 from geofit.fitting.smoothness import ENOUGH, as_smooth, search
+from geofit.fitting.weighted_points import WeightedPoints
 from geofit.splines import bspline
 from geofit.splines.matern import MaternPrecision
 from geofit.splines.tensor import Factor, TensorSpace, band_sum
@@ -179,7 +179,7 @@ def slope_of(plane: Rows, trend: Floats | None, measured: Slopes | None = None) 
 
 def choose_covariance(
     space: TensorSpace,
-    given: Observations,
+    given: WeightedPoints,
     smoothing: float | None = None,
     known: Sequence[FieldChoice] = (),
     trend: Floats | None = None,
@@ -192,7 +192,7 @@ def choose_covariance(
     ----------
     space : TensorSpace
         A space of even spans over the area; what it cannot follow counts as noise.
-    given : Observations
+    given : WeightedPoints
         Heights (or coordinates) in metres, trend removed, at places in units of the spacing, with the inverse squares
         of their noise relative to each other (:func:`relative_noise`) as weights.
     smoothing : float, optional
@@ -302,7 +302,7 @@ def restricted(space: TensorSpace, coefficients: Floats) -> Floats:
 def smooth(
     space: TensorSpace,
     field: FieldChoice,
-    given: Observations,
+    given: WeightedPoints,
     trend: Floats | None = None,
     measured: Slopes | None = None,
 ) -> Smoothed:

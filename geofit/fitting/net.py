@@ -122,7 +122,7 @@ def crowded(space: TensorSpace, plane: Rows) -> tuple[float, float] | None:
 
 def smoothed(data: Data, space: TensorSpace, field: FieldChoice) -> Smoothed:
     """Return a chosen field on a space."""
-    return smooth(space, field, data.observations, data.trend, data.slopes)
+    return smooth(space, field, data.weighted, data.trend, data.slopes)
 
 
 def approximate_all(

@@ -11,12 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geofit.data.errors import FitError
 from geofit.data.long_arrays import inverse_squares
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
 from geofit.fitting.field import FieldChoice, choose_covariance, widened_space
-from geofit.fitting.observations import Observations
 from geofit.fitting.optimum import BEHIND
+from geofit.fitting.weighted_points import WeightedPoints
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
@@ -78,7 +79,7 @@ def sketched_fields(data: Data, smoothing: float | None = None) -> tuple[FieldCh
     """
     some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
     space = even_space(data.area, EVEN, degree_for(len(data.plane)), SKETCH)
-    given = Observations(data.plane[some], data.value[some], inverse_squares(data.noise[some]))
+    given = WeightedPoints(data.plane[some], data.value[some], inverse_squares(data.noise[some]))
     found = choose_covariance(space, given, smoothing, (), data.trend)
     return tuple(field for field, value in found if value < found[0][1] + BEHIND)
 
@@ -90,7 +91,7 @@ def choose_field(data: Data, settings: FitSettings, most: int, sketched: Sequenc
     noise on the first level. Its spans are lengthened while the likelihood gains by it; where it gains nothing, they
     are shortened, down to those that points in groups resolve.
     """
-    degree, points = degree_for(len(data.plane)), data.observations
+    degree, points = degree_for(len(data.plane)), data.weighted
     given = None if settings.smoothing == "auto" else float(settings.smoothing)
     limit = min(most, LAST_LEVEL)
     space = even_space(data.area, EVEN, degree, min(FIRST_LEVEL, limit))
@@ -139,8 +140,8 @@ def _lengthened(best: Level, coarser: Iterable[TensorSpace], on: Search) -> Leve
     """
     simplest = best
     for space in coarser:
-        level = on(space, [simplest.field])[0]
-        if level.value > simplest.value or level.field.noise > LOUDER * best.field.noise:
+        level = _tried(on, space, simplest.field)
+        if level is None or level.value > simplest.value or level.field.noise > LOUDER * best.field.noise:
             break
         simplest = level
     return simplest if simplest.value < best.value - GAIN else best
@@ -153,11 +154,19 @@ def _shortened(best: Level, finer: Iterable[TensorSpace], on: Search, n: int) ->
             continue
         worth = min(OF_POINTS * n, OF_CONTROL_POINTS * (space.size - best.space.size))
         gain = GAIN if best.field.alpha <= space.degree else max(GAIN, worth)
-        level = on(space, [best.field])[0]
-        if level.value > best.value - gain:
+        level = _tried(on, space, best.field)
+        if level is None or level.value > best.value - gain:
             break
         best = level
     return best
+
+
+def _tried(on: Search, space: TensorSpace, field: FieldChoice) -> Level | None:
+    """Return the field on another space; None where rounding leaves its system without a solution there."""
+    try:
+        return on(space, [field])[0]
+    except FitError:
+        return None
 
 
 def _finer(area: Rectangle, degree: int, limit: int, closest: float) -> Iterator[TensorSpace]:

@@ -22,9 +22,9 @@ from geofit.fitting.active_points import Data, degree_for, gather_points
 from geofit.fitting.conflicts import trust_of, trust_of_kinds
 from geofit.fitting.field import FieldChoice, choose_covariance
 from geofit.fitting.model import Problem
-from geofit.fitting.observations import Observations
 from geofit.fitting.resolution import EVEN, FIRST_LEVEL, GAIN, SKETCH, SKETCHED, even_space, sketched_fields
 from geofit.fitting.smoothness import ENOUGH
+from geofit.fitting.weighted_points import WeightedPoints
 from geofit.splines.tensor import TensorSpace
 
 __all__ = ["with_noise_of_sources"]
@@ -111,7 +111,7 @@ def _found(
     plane, value = data.plane[some], data.value[some]
 
     def trial(noise: Floats, known: Sequence[FieldChoice]) -> _Trial:
-        given = Observations(plane, value, inverse_squares(noise))
+        given = WeightedPoints(plane, value, inverse_squares(noise))
         field, own = choose_covariance(space, given, None, known, data.trend)[0]
         return _Trial(noise, own + 2 * float(np.log(noise).sum()), field)
 

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.errors import SettingsError
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
-from geofit.implicit.field import Box, corners_of, points_of
+from geofit.implicit.field import Box, box_corners, points_of
 from geofit.implicit.kernels import Potential, potential
 
 __all__ = ["Metaballs", "spherical_metaballs"]
@@ -176,7 +176,7 @@ class Metaballs:
         """Return bounds of phi in boxes: each potential is monotone in q, and q is bounded in a box."""
         from geofit.implicit.blob_loops import density_range
 
-        lower, upper = corners_of(lower, upper)
+        lower, upper = box_corners(lower, upper)
         lowest, highest = density_range(lower, upper, *self._balls)
         return (self.threshold - highest) / self.slope_scale, (self.threshold - lowest) / self.slope_scale
 

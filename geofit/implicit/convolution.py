@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from geofit.data.errors import SettingsError
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
-from geofit.implicit.field import Box, corners_of, points_of
+from geofit.implicit.field import Box, box_corners, points_of
 
 __all__ = ["Convolution", "kernel_integral"]
 
@@ -291,7 +291,7 @@ class Convolution:
 
     def range_in(self, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
         """Return bounds of phi in boxes, by the slope that the segments near each can cause."""
-        lower, upper = corners_of(lower, upper)
+        lower, upper = box_corners(lower, upper)
         reach = self._slopes(lower, upper) / self._scale * np.linalg.norm(upper - lower, axis=1) / 2
         centre = self.value((lower + upper) / 2)
         return centre - reach, centre + reach

@@ -22,8 +22,8 @@ __all__ = [
     "Field",
     "FunctionField",
     "RangedField",
+    "box_corners",
     "box_of",
-    "corners_of",
     "moved",
     "normals",
     "points_of",
@@ -83,7 +83,7 @@ def range_in(field: Field, lower: Floats, upper: Floats) -> tuple[Floats, Floats
     (k,) array, (k,) array
         No value in box i is below the first or above the second.
     """
-    lower, upper = corners_of(lower, upper)
+    lower, upper = box_corners(lower, upper)
     if isinstance(field, RangedField):
         return field.range_in(lower, upper)
     if not np.isfinite(field.lipschitz):
@@ -121,7 +121,7 @@ def points_of(xyz: ArrayLike) -> Floats:
     return points
 
 
-def corners_of(lower: ArrayLike, upper: ArrayLike) -> Box:
+def box_corners(lower: ArrayLike, upper: ArrayLike) -> Box:
     """Return the corners of boxes as two (k, 3) arrays of floats.
 
     Raises

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.errors import SettingsError
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
-from geofit.implicit.field import Box, Field, corners_of, points_of
+from geofit.implicit.field import Box, Field, box_corners, points_of
 from geofit.implicit.lattice import Lattice, sample
 
 __all__ = ["SplineGrid", "spline_grid", "spline_of_field"]
@@ -97,7 +97,7 @@ class SplineGrid:
         """Return bounds of phi in boxes: a B-spline stays between its coefficients."""
         from geofit.implicit.grid_loops import coefficient_range
 
-        (low, near), (high, far) = map(self._places, corners_of(lower, upper))
+        (low, near), (high, far) = map(self._places, box_corners(lower, upper))
         cells = np.array(self.lattice.shape) - 2
         first = np.minimum(np.floor(low).astype(np.int64), cells)
         last = np.minimum(np.maximum(np.ceil(high).astype(np.int64) - 1, first), cells) + 3

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.errors import FitError, SettingsError
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
-from geofit.implicit.field import Box, box_of, corners_of, points_of
+from geofit.implicit.field import Box, box_corners, box_of, points_of
 
 __all__ = ["Plane", "Quadric", "ellipsoid", "fit_quadric", "quadric_from_coefficients"]
 
@@ -152,7 +152,7 @@ class Quadric:
 
     def range_in(self, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
         """Return bounds of f in boxes, by the gradient at their centres and the largest curvature."""
-        lower, upper = corners_of(lower, upper)
+        lower, upper = box_corners(lower, upper)
         centre, half = (lower + upper) / 2, (upper - lower) / 2
         reach = (np.abs(self.gradient(centre)) * half).sum(axis=1)
         reach += np.abs(np.linalg.eigvalsh(self._parts[0])).max() * (half**2).sum(axis=1)

@@ -121,9 +121,9 @@ class MetaballBody(OwnField):
 
     def range_in(self, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
         """Return bounds (k,), (k,) of the field in boxes with corners (k, 3)."""
-        from geofit.implicit.field import corners_of
+        from geofit.implicit.field import box_corners
 
-        low, high = self._cells.range_in(*corners_of(lower, upper))
+        low, high = self._cells.range_in(*box_corners(lower, upper))
         return self._scale * (1.0 - high), self._scale * (1.0 - low)
 
     @property

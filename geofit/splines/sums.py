@@ -14,7 +14,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from geofit.data.long_arrays import Rows
+from geofit.data.long_arrays import Rows, blocks
 from geofit.splines import bspline
 
 __all__ = ["CellSums", "Moments", "cell_sums"]
@@ -22,9 +22,8 @@ __all__ = ["CellSums", "Moments", "cell_sums"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-#: Points that are sorted together, so that each cell has many of them, and those that are worked on together: their
-#: polynomials stay in the processor's cache.
-_SORTED, _CHUNK = 1 << 20, 16_384
+#: Points that are worked on together: their polynomials stay in the processor's cache.
+_CHUNK = 16_384
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,9 +65,8 @@ class Moments:
         """Sum (n, 2) places with heights (n,) and weights (n,)."""
         shape = len(lines_u) - 1, len(lines_v) - 1
         sums = np.zeros((shape[0] * shape[1], 2 * degree + 1, 3 * degree + 2))
-        for start in range(0, len(z), _SORTED):
-            some = slice(start, start + _SORTED)
-            _add(sums, lines_u, lines_v, degree, plane[some], z[some], weight[some])
+        for parts in blocks(plane, z, weight):
+            _add(sums, lines_u, lines_v, degree, *parts)
         grid = sums.reshape(*shape, *sums.shape[1:])
         return cls(lines_u, lines_v, grid[..., : 2 * degree + 1], grid[..., : degree + 1, 2 * degree + 1 :])
 
@@ -104,6 +102,8 @@ def cell_sums(knots_u: Floats, knots_v: Floats, degree: int, plane: Rows, z: Row
 
 def _add(sums: Floats, lines_u: Floats, lines_v: Floats, p: int, plane: Floats, z: Floats, weight: Floats) -> None:
     """Add points to the sums of their cells, (cells, 2p + 1, 3p + 2), those with the heights last."""
+    if not len(z):
+        return
     across = len(lines_v) - 1
     cell = bspline.intervals(lines_u, plane[:, 0]) * across + bspline.intervals(lines_v, plane[:, 1])
     order = np.argsort(cell.astype(np.min_scalar_type(len(sums))), kind="stable")

@@ -16,8 +16,8 @@ from geofit.fitting.field import (
     smooth,
     widened_space,
 )
-from geofit.fitting.observations import Observations
 from geofit.fitting.resolution import EVEN, even_space, longest_span
+from geofit.fitting.weighted_points import WeightedPoints
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
@@ -65,11 +65,11 @@ def space_over(n, degree=3):
 
 
 def chosen(space, plane, z, smoothing=None):
-    return choose_covariance(space, Observations(plane, z, np.ones(len(z))), smoothing)[0][0]
+    return choose_covariance(space, WeightedPoints(plane, z, np.ones(len(z))), smoothing)[0][0]
 
 
 def smoothed(space, field, plane, z):
-    return smooth(space, field, Observations(plane, z, np.ones(len(z)))).coefficients
+    return smooth(space, field, WeightedPoints(plane, z, np.ones(len(z)))).coefficients
 
 
 def points_of(n, seed, noise, height, scale=1.0):
@@ -240,8 +240,8 @@ def test_turning_the_axes_turns_the_field():
     plane, z, _ = cloud(200, 1, 0.3, rugged(1))
     knots_u = bspline.clamped_knots(np.linspace(0, 14.2, 30), 3)
     knots_v = bspline.clamped_knots(np.linspace(0, 14.2, 26), 3)
-    one, value = choose_covariance(TensorSpace(knots_u, knots_v), Observations(plane, z, np.ones(200)))[0]
-    other, same = choose_covariance(TensorSpace(knots_v, knots_u), Observations(plane[:, ::-1], z, np.ones(200)))[0]
+    one, value = choose_covariance(TensorSpace(knots_u, knots_v), WeightedPoints(plane, z, np.ones(200)))[0]
+    other, same = choose_covariance(TensorSpace(knots_v, knots_u), WeightedPoints(plane[:, ::-1], z, np.ones(200)))[0]
     assert same == pytest.approx(value, abs=1e-6)
     assert other.turned.stretch == pytest.approx(one.stretch, abs=1e-9)
 
@@ -272,7 +272,7 @@ def test_smooth_solves_the_penalised_problem_with_a_free_plane():
     solution = np.linalg.solve(system, np.concatenate([a.T @ z, f.T @ z]))
     at = np.random.default_rng(3).uniform(0, np.sqrt(80), (50, 2))
     expected = wide.matrix(at) @ solution[:-3] + np.column_stack([np.ones(50), at]) @ solution[-3:]
-    found = smooth(space, field, Observations(plane, z, np.ones(80)))
+    found = smooth(space, field, WeightedPoints(plane, z, np.ones(80)))
     np.testing.assert_allclose(space.matrix(at) @ found.coefficients, expected, atol=1e-5)
     np.testing.assert_allclose(found.plane, solution[-3:], atol=1e-4)
 
@@ -364,7 +364,7 @@ def test_each_smoothness_finds_its_own_noise_whatever_the_others_find(seed):
     plane, z, trend = cloud(1000, seed, 0.05, hills(seed, shortest=120.0))
     side = np.sqrt(1000)
     coarse, fine = (even_space((0, side, 0, side), EVEN, 3, size) for size in (484, 1444))
-    given = Observations(plane, z, np.ones(1000))
+    given = WeightedPoints(plane, z, np.ones(1000))
     known = [field for field, _ in choose_covariance(coarse, given, trend=trend)]
     assert {field.alpha for field in known} >= {2, 3}
     found = choose_covariance(fine, given, known=known, trend=trend)

@@ -10,6 +10,7 @@ import time
 import traceback
 import weakref
 from contextlib import suppress
+from multiprocessing.connection import Connection
 
 import pytest
 from PySide6.QtCore import QObject
@@ -162,11 +163,13 @@ def test_a_process_of_its_own_gives_its_result(owner, qtbot):
 
 
 def test_no_thread_outlives_the_call_of_a_process(owner, qtbot, monkeypatch):
-    def slow(helper, order):
-        helper.pipe.send_bytes(order)
+    send = Connection.send_bytes
+
+    def slow(connection, order):
+        send(connection, order)
         time.sleep(0.5)  # on a busy machine the result may be here before the thread has ended
 
-    monkeypatch.setattr(worker.Helper, "_send", slow)
+    monkeypatch.setattr(Connection, "send_bytes", slow)
     before = set(threading.enumerate())
     task = worker.run_in_process(owner, double, 2)
     with qtbot.waitSignal(task.ended, timeout=60_000):

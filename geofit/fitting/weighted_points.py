@@ -1,4 +1,4 @@
-"""Weighted observations, and their normal equations on one space after the other."""
+"""Weighted points, and their normal equations on one space after the other."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from geofit.fitting.density import CLOUD
 from geofit.splines.sums import Moments
 from geofit.splines.tensor import TensorSpace
 
-__all__ = ["Observations"]
+__all__ = ["WeightedPoints"]
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(eq=False)
-class Observations:
+class WeightedPoints:
     """Values, (n,) or (n, k), at (n, 2) places, with weights (n,).
 
     A cloud takes long to go through: it is summed once for several spaces.
