@@ -306,6 +306,23 @@ _TRIES = (
         "instead of 0.0187 m; 0.02: 3,782, 1.0 s, 0.0197 m; 60 sites of this page: core, GM 1.005, whole 1.001",
         "yes",
     ),
+    (
+        "under the cap, knots between the tightest neighbours of a core first, then beside them, 0.9 of the control "
+        "points laid by places, 0.6 where points remain strained",
+        "control points a point, worst 22.4 to 15.0 (9 of 200 sites above 15 to none); core, GM 0.980, whole 1.005; "
+        "the same points are met",
+        "yes",
+    ),
+    (
+        "0.6 only where the points cannot be met",
+        "one core 0.66 to 1.47: strained points are met, with waves between them",
+        "no",
+    ),
+    (
+        "0.75 or 0.6 from the start",
+        "100 other sites: core, GM 0.999 and 1.005, whole 1.003 and 1.004",
+        "no",
+    ),
 )
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from operator import itemgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,9 @@ Rectangle = tuple[float, float, float, float]
 
 #: Control points a data point beside a core, and how many it may take where its points are met with no fewer.
 A_POINT, LAST_CAP = 15, 60
+#: Share of the control points that are laid by the places of a core's points; the rest goes where single points ask
+#: for it. The second where that does not suffice.
+LAID = (0.9, 0.6)
 #: Longest span outside a core, in units of the spacing of the sparse points: on longer ones no rough field fits.
 LONGEST = 0.45
 #: The same where the likelihood asks for a field on finer spans than evenly spaced points do, as far as the cap allows.
@@ -236,15 +240,23 @@ def _through_points(core: _Core, limits: _Limits, linear: bool) -> _Through:
     chosen = chosen[np.lexsort(data.plane[chosen].T)]
     plane = data.plane[chosen]
     pairs = neighbour_pairs(plane)
-    breaks, counted = _breaks(plane, pairs, core, limits)
-    if longest_span(core.coarse) > SIMPLE or core.field.alpha > degree:
-        base = core.coarse
-    else:
-        some = [bspline.clamped_knots(some_breaks(along, min(FIELD_SPAN, limits.longest)), degree) for along in breaks]
-        base = TensorSpace(some[0], some[1], degree)
-    regional = smoothed(data, base, core.field)
-    misfit = data.value[chosen] - base.matrix(plane) @ regional.coefficients
-    breaks = refine_knots(*breaks, plane, pairs, misfit, degree, counted, max(core.settings.max_iterations, 1))
+    tried = []
+    for laid in LAID:
+        breaks, counted = _breaks(plane, pairs, core, limits, laid)
+        if longest_span(core.coarse) > SIMPLE or core.field.alpha > degree:
+            base = core.coarse
+        else:
+            span = min(FIELD_SPAN, limits.longest)
+            some = [bspline.clamped_knots(some_breaks(along, span), degree) for along in breaks]
+            base = TensorSpace(some[0], some[1], degree)
+        regional = smoothed(data, base, core.field)
+        misfit = data.value[chosen] - base.matrix(plane) @ regional.coefficients
+        rounds = max(core.settings.max_iterations, 1)
+        refined = refine_knots(*breaks, plane, pairs, misfit, degree, counted, rounds, data.unit)
+        tried.append((refined.strain, base, regional, refined.breaks))
+        if refined.strain <= 1.0:
+            break
+    _, base, regional, breaks = min(tried, key=itemgetter(0))
     knots = [bspline.clamped_knots(along, degree) for along in breaks]
     fine, start = carried(base, regional.coefficients, knots[0], knots[1])
     if linear:
@@ -261,11 +273,12 @@ def _through_points(core: _Core, limits: _Limits, linear: bool) -> _Through:
 
 
 def _breaks(
-    plane: Floats, pairs: Ints, given: _Core, limits: _Limits
+    plane: Floats, pairs: Ints, given: _Core, limits: _Limits, laid: float
 ) -> tuple[tuple[Floats, Floats], Callable[[tuple[int, int]], bool]]:
     """Lay breaks that follow the core's points, ``plane`` (m, 2) with the ``pairs`` of neighbours among them.
 
-    Return also the question whether a net of so many control points is within the cap.
+    They take the share ``laid`` of the control points within the cap. Return also the question whether a net of so
+    many control points is within it.
 
     What makes the surface pass through a point must be narrow in both directions: across the sections breaks hug each
     of them, along them they follow the closest neighbours of any.
@@ -284,7 +297,7 @@ def _breaks(
         breaks_v = graded_breaks(required_v, limits.longest * stretch, sizes_v * scale)
         knots = [bspline.clamped_knots(along, degree) for along in (breaks_u, breaks_v)]
         space = TensorSpace(knots[0], knots[1], degree)
-        if in_patches(space.shape, core, space) <= 0.9 * limits.most or stretch > 1e3:
+        if in_patches(space.shape, core, space) <= laid * limits.most or stretch > 1e3:
             break
         stretch *= 1.1
 

@@ -46,6 +46,12 @@ OVERSHOOT = 10.0
 SWING = 100.0
 #: Largest distance at which the linear algebra may leave a core point from the surface, metres.
 EXACT = 1e-8
+#: Where breaks go for two neighbours, in steps of their gap from the middle between them: the next ones where there are
+#: breaks already. A change that is narrow takes several short spans.
+BESIDE = ((0.0,), (-1.0, 1.0), (-2.5, 2.5))
+#: Slope between two neighbours, beyond the field's own, from which they contradict each other: a change so narrow is
+#: no relief.
+WALL = 10.0
 #: Damping of changes that may leave a misfit, relative to what a point's own control points weigh.
 DAMPING = 0.01
 
@@ -60,6 +66,14 @@ class Lines:
     u: Floats
     stray: Floats
     straight: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Refined:
+    """Breaks in u and v, and how far they let a control point move: above 1, farther than it should."""
+
+    breaks: tuple[Floats, Floats]
+    strain: float
 
 
 def section_lines(plane: Floats, section: NDArray[np.str_], spacing: float) -> Lines:
@@ -179,7 +193,8 @@ def refine_knots(
     degree: int,
     allowed: Callable[[tuple[int, int]], bool],
     rounds: int,
-) -> tuple[Floats, Floats]:
+    unit: float = 1.0,
+) -> Refined:
     """Add knots until no control point has to move far to meet two neighbouring points.
 
     Parameters
@@ -198,20 +213,34 @@ def refine_knots(
         Whether a net of so many control points (in u, in v) stays below the cap.
     rounds : int
         Cap of the number of rounds.
+    unit : float
+        Metres in a unit of the plane.
+
+    Returns
+    -------
+    Refined
+        The breaks with the new ones. Its strain is above 1 where the cap or the rounds ended before all moves were
+        short, or where points contradict each other.
     """
     limit = OVERSHOOT * max(float(np.abs(misfit).max(initial=0.0)), 1e-3)
-    for _ in range(rounds):
+    first, second = pairs.T
+    rise = np.linalg.norm((misfit[first] - misfit[second]).reshape(len(pairs), -1), axis=1)
+    wall = rise > WALL * unit * np.linalg.norm(plane[first] - plane[second], axis=1)
+    for left in range(rounds, -1, -1):
         space = TensorSpace(bspline.clamped_knots(breaks_u, degree), bspline.clamped_knots(breaks_v, degree), degree)
-        strain = _strain(space, plane, misfit)
-        strained = np.flatnonzero(strain > limit)
-        if not len(strained):
+        strain = _strain(space, plane, misfit) / limit
+        strained = np.argsort(-strain, kind="stable")[: int((strain > 1.0).sum())]
+        if not len(strained) or not left:
             break
-        new_u, new_v = _between(pairs, strained, plane, breaks_u, breaks_v)
-        grown = (space.shape[0] + len(new_u), space.shape[1] + len(new_v))
-        if grown == space.shape or not allowed(grown):
+        new_u, new_v = _between(pairs, wall, strained, plane, breaks_u, breaks_v)
+        # Where the cap does not allow all, those come first that strain the most.
+        while len(strained) and not allowed((space.shape[0] + len(new_u), space.shape[1] + len(new_v))):
+            strained = strained[: len(strained) // 2]
+            new_u, new_v = _between(pairs, wall, strained, plane, breaks_u, breaks_v)
+        if not len(new_u) and not len(new_v):
             break
         breaks_u, breaks_v = np.union1d(breaks_u, new_u), np.union1d(breaks_v, new_v)
-    return breaks_u, breaks_v
+    return Refined((breaks_u, breaks_v), float(strain.max(initial=0.0)))
 
 
 def _strain(space: TensorSpace, plane: Floats, misfit: Floats) -> Floats:
@@ -226,32 +255,39 @@ def _strain(space: TensorSpace, plane: Floats, misfit: Floats) -> Floats:
     return np.where(left > 1e-4 * np.abs(misfit).max(), np.inf, moved)
 
 
-def _between(pairs: Ints, strained: Ints, plane: Floats, breaks_u: Floats, breaks_v: Floats) -> tuple[Floats, Floats]:
-    """Return new breaks in the middle of the tightest pair at each strained point."""
-    tight = np.isin(pairs, strained).any(axis=1)
-    first, second = plane[pairs[tight, 0]], plane[pairs[tight, 1]]
+def _between(
+    pairs: Ints, wall: NDArray[np.bool_], strained: Ints, plane: Floats, breaks_u: Floats, breaks_v: Floats
+) -> tuple[Floats, Floats]:
+    """Return new breaks in the middle of the tightest pair at each strained point; beside it, where one is there."""
+    near = np.isin(pairs, strained).any(axis=1)
+    tight, wall = pairs[near], wall[near]
+    first, second = plane[tight[:, 0]], plane[tight[:, 1]]
     middle, gap = (first + second) / 2, np.abs(second - first)
-    span_u, near_u = _span(breaks_u, middle[:, 0])
-    span_v, near_v = _span(breaks_v, middle[:, 1])
-    ratio_u, ratio_v = gap[:, 0] / span_u, gap[:, 1] / span_v
-    along_v = ratio_v >= ratio_u
-    ratio = np.maximum(ratio_u, ratio_v)
-    chosen_u, chosen_v = [], []
+    breaks = (breaks_u, breaks_v)
+    ratio = gap / np.column_stack([_span(breaks[axis], middle[:, axis]) for axis in (0, 1)])
+    chosen: tuple[list[float], list[float]] = ([], [])
     for point in strained:
-        mine = np.flatnonzero((pairs[tight] == point).any(axis=1))
+        mine = np.flatnonzero((tight == point).any(axis=1))
         if not len(mine):
             continue
-        k = mine[np.argmin(ratio[mine])]
-        if along_v[k] and near_v[k] > 0.3 * gap[k, 1]:
-            chosen_v.append(middle[k, 1])
-        elif not along_v[k] and near_u[k] > 0.3 * gap[k, 0]:
-            chosen_u.append(middle[k, 0])
-    return _thin(np.unique(chosen_u), breaks_u), _thin(np.unique(chosen_v), breaks_v)
+        k = mine[np.argmin(ratio[mine].max(axis=1))]
+        axis = int(ratio[k, 1] >= ratio[k, 0])
+        for steps in BESIDE[:1] if wall[k] else BESIDE:
+            places = [middle[k, axis] + step * gap[k, axis] for step in steps]
+            apart = 0.3 * max(steps[-1], 1.0) * gap[k, axis]
+            new = [
+                x for x in places if np.abs(breaks[axis] - x).min() > apart and breaks[axis][0] < x < breaks[axis][-1]
+            ]
+            if new:
+                chosen[axis].extend(new)
+                break
+    return _thin(np.unique(chosen[0]), breaks_u), _thin(np.unique(chosen[1]), breaks_v)
 
 
-def _span(breaks: Floats, x: Floats) -> tuple[Floats, Floats]:
+def _span(breaks: Floats, x: Floats) -> Floats:
+    """Return the length of the span at each of x."""
     k = np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, len(breaks) - 2)
-    return breaks[k + 1] - breaks[k], np.minimum(x - breaks[k], breaks[k + 1] - x)
+    return breaks[k + 1] - breaks[k]
 
 
 def _thin(new: Floats, breaks: Floats) -> Floats:

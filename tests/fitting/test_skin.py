@@ -133,7 +133,9 @@ def test_separate_lowers_the_strain_of_close_neighbours():
     plane = np.concatenate([plane, plane[:1] + np.array((0.0, 0.02))])
     misfit = np.append(misfit, misfit[0] + 1.0)
     u, v = np.arange(7.0), np.arange(6.0)
-    new_u, new_v = refine_knots(u, v, plane, neighbour_pairs(plane), misfit, 3, lambda shape: True, 20)
+    found = refine_knots(u, v, plane, neighbour_pairs(plane), misfit, 3, lambda shape: True, 20)
+    new_u, new_v = found.breaks
+    assert found.strain <= 1
     assert np.isin(u, new_u).all()
     assert np.isin(v, new_v).all()
     assert len(new_v) > len(v)
@@ -144,7 +146,7 @@ def test_separate_lowers_the_strain_of_close_neighbours():
 def test_separate_leaves_calm_knots_and_minds_the_cap():
     plane, misfit = spread(8)
     u, v = np.arange(7.0), np.arange(6.0)
-    calm = refine_knots(u, v, plane, neighbour_pairs(plane), misfit, 3, lambda shape: True, 20)
+    calm = refine_knots(u, v, plane, neighbour_pairs(plane), misfit, 3, lambda shape: True, 20).breaks
     np.testing.assert_array_equal(calm[0], u)
     np.testing.assert_array_equal(calm[1], v)
     plane = np.concatenate([plane, plane[:1] + np.array((0.0, 0.001))])
@@ -152,8 +154,23 @@ def test_separate_leaves_calm_knots_and_minds_the_cap():
     for most in (60, 100, 150):
         new_u, new_v = refine_knots(
             u, v, plane, neighbour_pairs(plane), misfit, 3, lambda shape, most=most: shape[0] * shape[1] <= most, 50
-        )
+        ).breaks
         assert space_of(new_u, new_v).size <= max(most, space_of(u, v).size)
+
+
+def test_where_the_cap_allows_few_knots_they_go_to_the_tightest_pair():
+    plane, misfit = spread(20)
+    close = plane[[0, 0, 7]] + np.array([(0.0, 0.01), (0.0, 0.02), (0.3, 0.0)])
+    plane, misfit = np.concatenate([plane, close]), np.append(misfit, misfit[[0, 0, 7]] + (1.0, -1.0, 0.5))
+    u, v = np.arange(7.0), np.arange(6.0)
+    pairs = neighbour_pairs(plane)
+    most = space_of(u, v).shape[0] * (space_of(u, v).shape[1] + 1)
+    free = refine_knots(u, v, plane, pairs, misfit, 3, lambda shape: True, 1).breaks
+    capped = refine_knots(u, v, plane, pairs, misfit, 3, lambda shape: shape[0] * shape[1] <= most, 1).breaks
+    assert len(free[0]) + len(free[1]) > len(u) + len(v) + 1, "without a cap more would be laid"
+    (added,) = np.setdiff1d(capped[1], v)
+    assert abs(added - plane[0, 1]) < 0.03
+    np.testing.assert_array_equal(capped[0], u)
 
 
 def test_ruled_reproduces_a_ruled_surface():
