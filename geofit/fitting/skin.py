@@ -224,7 +224,8 @@ def refine_knots(
     """
     limit = OVERSHOOT * max(float(np.abs(misfit).max(initial=0.0)), 1e-3)
     first, second = pairs.T
-    rise = np.linalg.norm((misfit[first] - misfit[second]).reshape(len(pairs), -1), axis=1)
+    off = misfit.reshape(len(plane), -1)
+    rise = np.linalg.norm(off[first] - off[second], axis=1)
     wall = rise > WALL * unit * np.linalg.norm(plane[first] - plane[second], axis=1)
     for left in range(rounds, -1, -1):
         space = TensorSpace(bspline.clamped_knots(breaks_u, degree), bspline.clamped_knots(breaks_v, degree), degree)
