@@ -403,8 +403,9 @@ class MainWindow(QMainWindow):
         name, given = QInputDialog.getText(
             self, self.tr("Rename site"), self.tr("Name of the site"), text=self.session.document.state.name
         )
+        name = name.strip()
         if given and name != self.session.document.state.name:
-            self.fitting.push(RenameSite(name.strip()))
+            self.fitting.push(RenameSite(name))
 
     def _set_theme(self, theme: str) -> None:
         app = QApplication.instance()

@@ -154,7 +154,15 @@ def render(value: Any, catalogue: NullTranslations) -> Any:
         return _joined([str(render(item, catalogue)) for item in value], catalogue)
     if isinstance(value, str):
         return catalogue.gettext(value) if value in TERMS and not isinstance(value, Untranslated) else str(value)
-    return value
+    return _Negative(value) if isinstance(value, float) and value < 0 else value
+
+
+class _Negative(float):
+    """A number that is formatted with a minus sign; as it was given, without a format, it keeps its hyphen."""
+
+    def __format__(self, spec: str) -> str:
+        text = super().__format__(spec)
+        return text.replace("-", "−", 1) if spec else text
 
 
 class _WithLengths(Formatter):

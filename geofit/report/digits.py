@@ -20,6 +20,7 @@ __all__ = [
     "place",
     "share",
     "tick",
+    "typeset",
     "volume",
 ]
 
@@ -107,7 +108,7 @@ def tick(value: float) -> str:
     >>> tick(-8900.0), tick(0.25), tick(3_100_500.0).split()
     ('−8900', '0.25', ['3', '100', '500'])
     """
-    return _grouped(f"{round(value, 6) + 0.0:.10g}".replace("-", "−"))
+    return typeset(f"{round(value, 6) + 0.0:.10g}")
 
 
 def given(value: float) -> str:
@@ -129,7 +130,7 @@ def count(value: float | None) -> str:
     >>> count(1234567).split(), count(None)
     (['1', '234', '567'], '–')
     """
-    return NOTHING if value is None or not math.isfinite(value) else _grouped(f"{value:.0f}".replace("-", "−"))
+    return NOTHING if value is None or not math.isfinite(value) else typeset(f"{value:.0f}")
 
 
 def figure(value: float) -> str:
@@ -197,6 +198,17 @@ def measured(value: float | None, unit: str) -> str:
         return _measure(value, _UNITS[unit])
     text = count(value) if float(value).is_integer() else f"{value:.3g}".replace("-", "−")
     return f"{text}{_GAP}{_UNITS.get(unit, unit)}".rstrip(_GAP)
+
+
+def typeset(text: str) -> str:
+    """Write a plain decimal number with a minus sign, and its digits before the point in threes, from five on.
+
+    Examples
+    --------
+    >>> typeset("-12.50"), typeset("437189.0").split()
+    ('−12.50', ['437', '189.0'])
+    """
+    return _grouped(text.replace("-", "−"))
 
 
 def _grouped(text: str) -> str:

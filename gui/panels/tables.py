@@ -34,6 +34,7 @@ from geofit.data.files import replacing, spreadsheet_cell
 from geofit.gui.lengths import in_title, shown_coordinate, shown_length
 from geofit.gui.preferences import Preferences
 from geofit.gui.translate import translated
+from geofit.report.digits import typeset
 
 __all__ = ["ArrayModel", "DataTable", "TableColumn", "natural", "translated_column"]
 
@@ -82,12 +83,19 @@ class TableColumn:
     measured: bool = False
 
     def text(self, row: int) -> str:
-        """Return the cell as it is shown."""
+        """Return the cell as it is written into files: spreadsheets read its numbers."""
         value = self.values[row]
         if self.digits is None:
             return str(value)
         # Adding 0 turns -0.000 into 0.000.
         return "" if np.isnan(value) else f"{round(float(value), self.digits) + 0.0:.{self.digits}f}"
+
+    def cell(self, row: int) -> str:
+        """Return the cell as it is shown: numbers with a minus sign, in groups of three unless they are coordinates."""
+        text = self.text(row)
+        if self.digits is None or not text:
+            return text
+        return text.replace("-", "−") if self.coordinate else typeset(text)
 
     def shown(self) -> TableColumn:
         """Return the column as it is shown: one of lengths, whose title ends in ", m", in the chosen unit."""
@@ -174,7 +182,7 @@ class ArrayModel(QAbstractTableModel):
         """Return what a cell shows."""
         column = self.columns[index.column()]
         if role == Qt.ItemDataRole.DisplayRole:
-            return column.text(self._order[index.row()])
+            return column.cell(self._order[index.row()])
         if role == Qt.ItemDataRole.TextAlignmentRole:
             return column.side
         if role == Qt.ItemDataRole.DecorationRole and column.icons is not None:

@@ -13,6 +13,12 @@ def test_a_length_in_a_sentence_has_the_digits_of_the_tables():
     assert texts == ["132.973 m of 3", "0.0301 m of 3", "3.21e-5 m of 3", "5970.100 m of 3"]
 
 
+def test_formatted_numbers_have_a_minus_sign_and_given_ones_stay_as_they_are():
+    found = message("x.y-z", "{a:.2f} {b:length} {c:.1g} {d} {e}", a=-0.14, b=-4.2, c=-1e-7, d=-3.5, e="T3-T2")
+    assert str(found) == "−0.14 −4.200 −1e-07 -3.5 T3-T2"
+    assert found.as_data()["params"]["a"] == -0.14
+
+
 def test_the_gravest_come_first_and_equals_keep_their_order():
     given = [of("info", "a"), of("warning", "b"), of("error", "c"), of("warning", "d"), of("info", "e")]
     assert [one.params["name"] for one in gravest_first(given)] == ["c", "b", "d", "a", "e"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from panel_samples import SITE, fitted, sample_site
+from PySide6.QtWidgets import QInputDialog
 
 from geofit.project.commands import SetSurface
 from geofit.project.provenance import Row
@@ -51,3 +52,14 @@ def test_the_list_rests_while_a_task_runs(app, qtbot):
     app.trigger("stop")
     app.idle()
     assert app.window.steps.list.isEnabled()
+
+
+def test_the_own_name_with_blanks_is_no_step(app, monkeypatch):
+    app.desktop.session.begin(sample_site(), SITE)
+    document, name = app.document, app.document.state.name
+    for given, expected in ((f"{name}  ", name), (f" {name} II ", f"{name} II")):
+        monkeypatch.setattr(QInputDialog, "getText", lambda *_, given=given, **__: (given, True))
+        before = document.state
+        app.trigger("rename")
+        assert document.state.name == expected
+        assert (document.state is before) == (expected == name)

@@ -54,7 +54,7 @@ def test_values_speak_against_a_name(write):
     assert guesses["azimuth"].confidence < 0.3
     assert "not numbers" in str(guesses["azimuth"].reason)
     assert guesses["dip"].confidence < 0.5 < guesses["depth"].confidence
-    assert "not between -90 and 90" in str(guesses["dip"].reason)
+    assert "not between −90 and 90" in str(guesses["dip"].reason)
     assert preview_file(source)[0].kind == ""
 
 
