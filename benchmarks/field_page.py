@@ -307,19 +307,19 @@ _TRIES = (
         "yes",
     ),
     (
-        "under the cap, knots between the tightest neighbours of a core first, then beside them, 0.9 of the control "
-        "points laid by places, 0.6 where points remain strained",
+        "under the cap, the tightest neighbours of a core get knots first: between them, then on both sides; 0.9 of "
+        "the control points follow the spacing of the points, 0.6 where points remain strained",
         "control points a point, worst 22.4 to 15.0 (9 of 200 sites above 15 to none); core, GM 0.980, whole 1.005; "
         "the same points are met",
         "yes",
     ),
     (
-        "0.6 only where the points cannot be met",
-        "one core 0.66 to 1.47: strained points are met, with waves between them",
+        "the same, but 0.6 only where the points cannot be met",
+        "one core 0.66 to 1.47: strained points are met, but the surface waves between them",
         "no",
     ),
     (
-        "0.75 or 0.6 from the start",
+        "the same, but 0.75 or 0.6 from the start",
         "100 other sites: core, GM 0.999 and 1.005, whole 1.003 and 1.004",
         "no",
     ),

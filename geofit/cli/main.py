@@ -23,6 +23,6 @@ for _command in _COMMANDS:
 
 def main() -> None:
     """Run the command line."""
-    # What ends with the process need not be looked through for garbage: that takes a third of a second.
+    # Python's last garbage collection takes a third of a second, and the process ends anyway.
     atexit.register(gc.freeze)
     app()

@@ -158,7 +158,7 @@ def render(value: Any, catalogue: NullTranslations) -> Any:
 
 
 class _Negative(float):
-    """A number that is formatted with a minus sign; as it was given, without a format, it keeps its hyphen."""
+    """A negative number: with a format it gets a minus sign; without one it stays as the user wrote it."""
 
     def __format__(self, spec: str) -> str:
         text = super().__format__(spec)

@@ -39,8 +39,8 @@ Rectangle = tuple[float, float, float, float]
 
 #: Control points a data point beside a core, and how many it may take where its points are met with no fewer.
 A_POINT, LAST_CAP = 15, 60
-#: Share of the control points that are laid by the places of a core's points; the rest goes where single points ask
-#: for it. The second where that does not suffice.
+#: Share of the control points that follows the spacing of a core's points; the rest goes to single pairs that need
+#: more. The second share is tried where the first leaves points strained.
 LAID = (0.9, 0.6)
 #: Longest span outside a core, in units of the spacing of the sparse points: on longer ones no rough field fits.
 LONGEST = 0.45
@@ -240,7 +240,7 @@ def _through_points(core: _Core, limits: _Limits, linear: bool) -> _Through:
     chosen = chosen[np.lexsort(data.plane[chosen].T)]
     plane = data.plane[chosen]
     pairs = neighbour_pairs(plane)
-    tried = []
+    tried, rounds = [], max(core.settings.max_iterations, 1)
     for laid in LAID:
         breaks, counted = _breaks(plane, pairs, core, limits, laid)
         if longest_span(core.coarse) > SIMPLE or core.field.alpha > degree:
@@ -251,7 +251,6 @@ def _through_points(core: _Core, limits: _Limits, linear: bool) -> _Through:
             base = TensorSpace(some[0], some[1], degree)
         regional = smoothed(data, base, core.field)
         misfit = data.value[chosen] - base.matrix(plane) @ regional.coefficients
-        rounds = max(core.settings.max_iterations, 1)
         refined = refine_knots(*breaks, plane, pairs, misfit, degree, counted, rounds, data.unit)
         tried.append((refined.strain, base, regional, refined.breaks))
         if refined.strain <= 1.0:
@@ -277,8 +276,8 @@ def _breaks(
 ) -> tuple[tuple[Floats, Floats], Callable[[tuple[int, int]], bool]]:
     """Lay breaks that follow the core's points, ``plane`` (m, 2) with the ``pairs`` of neighbours among them.
 
-    They take the share ``laid`` of the control points within the cap. Return also the question whether a net of so
-    many control points is within it.
+    They use the share ``laid`` of the control points that the cap allows. Return also a function that states whether
+    the cap allows a net of a given shape.
 
     What makes the surface pass through a point must be narrow in both directions: across the sections breaks hug each
     of them, along them they follow the closest neighbours of any.

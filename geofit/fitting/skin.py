@@ -46,12 +46,11 @@ OVERSHOOT = 10.0
 SWING = 100.0
 #: Largest distance at which the linear algebra may leave a core point from the surface, metres.
 EXACT = 1e-8
-#: Where breaks go for two neighbours, in steps of their gap from the middle between them: the next ones where there are
-#: breaks already. A change that is narrow takes several short spans.
-BESIDE = ((0.0,), (-1.0, 1.0), (-2.5, 2.5))
-#: Slope between two neighbours, beyond the field's own, from which they contradict each other: a change so narrow is
-#: no relief.
-WALL = 10.0
+#: Where to add breaks for two neighbours, as multiples of their gap from their midpoint; a set is tried where the one
+#: before it already has breaks. A narrow change takes several short spans.
+OFFSETS = ((0.0,), (-1.0, 1.0), (-2.5, 2.5))
+#: Two neighbours contradict each other if they ask for a slope this far above the field's own: no relief is so steep.
+STEEP = 10.0
 #: Damping of changes that may leave a misfit, relative to what a point's own control points weigh.
 DAMPING = 0.01
 
@@ -70,7 +69,7 @@ class Lines:
 
 @dataclass(frozen=True, eq=False)
 class Refined:
-    """Breaks in u and v, and how far they let a control point move: above 1, farther than it should."""
+    """Breaks in u and v, and the strain: how far a control point must move, as a multiple of what it may."""
 
     breaks: tuple[Floats, Floats]
     strain: float
@@ -193,7 +192,7 @@ def refine_knots(
     degree: int,
     allowed: Callable[[tuple[int, int]], bool],
     rounds: int,
-    unit: float = 1.0,
+    unit: float,
 ) -> Refined:
     """Add knots until no control point has to move far to meet two neighbouring points.
 
@@ -219,25 +218,25 @@ def refine_knots(
     Returns
     -------
     Refined
-        The breaks with the new ones. Its strain is above 1 where the cap or the rounds ended before all moves were
-        short, or where points contradict each other.
+        Old and new breaks. The strain stays above 1 where the cap or the number of rounds is reached first, or where
+        points contradict each other.
     """
     limit = OVERSHOOT * max(float(np.abs(misfit).max(initial=0.0)), 1e-3)
     first, second = pairs.T
     off = misfit.reshape(len(plane), -1)
     rise = np.linalg.norm(off[first] - off[second], axis=1)
-    wall = rise > WALL * unit * np.linalg.norm(plane[first] - plane[second], axis=1)
+    steep = rise > STEEP * unit * np.linalg.norm(plane[first] - plane[second], axis=1)
     for left in range(rounds, -1, -1):
         space = TensorSpace(bspline.clamped_knots(breaks_u, degree), bspline.clamped_knots(breaks_v, degree), degree)
         strain = _strain(space, plane, misfit) / limit
         strained = np.argsort(-strain, kind="stable")[: int((strain > 1.0).sum())]
         if not len(strained) or not left:
             break
-        new_u, new_v = _between(pairs, wall, strained, plane, breaks_u, breaks_v)
-        # Where the cap does not allow all, those come first that strain the most.
+        new_u, new_v = _between(pairs, steep, strained, plane, breaks_u, breaks_v)
+        # Where the cap does not allow all of them, the most strained points come first.
         while len(strained) and not allowed((space.shape[0] + len(new_u), space.shape[1] + len(new_v))):
             strained = strained[: len(strained) // 2]
-            new_u, new_v = _between(pairs, wall, strained, plane, breaks_u, breaks_v)
+            new_u, new_v = _between(pairs, steep, strained, plane, breaks_u, breaks_v)
         if not len(new_u) and not len(new_v):
             break
         breaks_u, breaks_v = np.union1d(breaks_u, new_u), np.union1d(breaks_v, new_v)
@@ -257,11 +256,14 @@ def _strain(space: TensorSpace, plane: Floats, misfit: Floats) -> Floats:
 
 
 def _between(
-    pairs: Ints, wall: NDArray[np.bool_], strained: Ints, plane: Floats, breaks_u: Floats, breaks_v: Floats
+    pairs: Ints, steep: NDArray[np.bool_], strained: Ints, plane: Floats, breaks_u: Floats, breaks_v: Floats
 ) -> tuple[Floats, Floats]:
-    """Return new breaks in the middle of the tightest pair at each strained point; beside it, where one is there."""
+    """Return new breaks for the tightest pair at each strained point: at its midpoint, else on both sides of it.
+
+    A pair that is too ``steep`` gets none but that at its midpoint.
+    """
     near = np.isin(pairs, strained).any(axis=1)
-    tight, wall = pairs[near], wall[near]
+    tight, steep = pairs[near], steep[near]
     first, second = plane[tight[:, 0]], plane[tight[:, 1]]
     middle, gap = (first + second) / 2, np.abs(second - first)
     breaks = (breaks_u, breaks_v)
@@ -273,9 +275,9 @@ def _between(
             continue
         k = mine[np.argmin(ratio[mine].max(axis=1))]
         axis = int(ratio[k, 1] >= ratio[k, 0])
-        for steps in BESIDE[:1] if wall[k] else BESIDE:
-            places = [middle[k, axis] + step * gap[k, axis] for step in steps]
-            apart = 0.3 * max(steps[-1], 1.0) * gap[k, axis]
+        for offsets in OFFSETS[:1] if steep[k] else OFFSETS:
+            places = [middle[k, axis] + offset * gap[k, axis] for offset in offsets]
+            apart = 0.3 * max(offsets[-1], 1.0) * gap[k, axis]
             new = [
                 x for x in places if np.abs(breaks[axis] - x).min() > apart and breaks[axis][0] < x < breaks[axis][-1]
             ]

@@ -248,7 +248,7 @@ def require_rendering() -> None:
     """Raise a :class:`MissingDependencyError` if there is no OpenGL library; choose EGL where there is no screen."""
     if not opengl_found():
         raise MissingDependencyError(NO_OPENGL)
-    # pyvista would make a window of its own to learn whether there is one.
+    # Otherwise pyvista opens a window of its own to find out the same.
     os.environ.setdefault("ALLOW_PLOTTING", "true")
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         # VTK would try the X server first, and complain.
@@ -341,7 +341,7 @@ def _image(
     image = np.asarray(plotter.screenshot(return_img=True))[..., :3]
     to_pixels = _projection(plotter, image.shape[:2], place)
     plotter.close()
-    # Colour by colour: a minimum over an axis of three takes a hundred times as long.
+    # Channel by channel: numpy's minimum over an axis of length three is far slower.
     red, green, blue = np.moveaxis(image, 2, 0)
     drawn = np.minimum(np.minimum(red, green), blue) < 250
     rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
