@@ -15,6 +15,7 @@ from geofit.cad.faces import edge_places, edges_with_faces, faces_of, free_edges
 from geofit.cad.step_attributes import attributes_of
 from geofit.data.accuracy import Check, ReadBack, Seam
 from geofit.data.messages import Message, message
+from geofit.geometry.one_sheet import one_sheet
 from geofit.geometry.projection import Projection, project
 from geofit.surfaces.protocol import FittedSurface, Surface
 
@@ -77,7 +78,8 @@ def read_back(
     loops = free_loops(shape.shape)
     inner, outer = _edge_tolerances(shape.shape)
     rim = surface.settings.boundary_tolerance
-    crossing = self_intersects(shape.shape)
+    proven = one_sheet(found.patches)
+    crossing = not proven and self_intersects(shape.shape)
     gap = max((seam.gap for seam in seams), default=0.0)
     angle = max((seam.angle for seam in seams), default=0.0)
     tangent = surface.settings.seam == "tangent"
@@ -160,6 +162,11 @@ def read_back(
                 "OpenCASCADE's boolean argument analyser finds the shell crossing itself",
             )
             if crossing
+            else message(
+                "cad.height-fields-apart",
+                "the faces in the file are height fields over one plane, side by side: they cannot cross",
+            )
+            if proven
             else message(
                 "cad.shell-does-not-cross-itself",
                 "OpenCASCADE's boolean argument analyser is silent",

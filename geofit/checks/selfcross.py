@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from geofit.checks.lattice import PatchLattice
 from geofit.data.accuracy import Check
 from geofit.data.messages import message
-from geofit.geometry.elevation import plan_map
+from geofit.geometry.one_sheet import one_sheet
 from geofit.surfaces.protocol import FittedSurface
 
 __all__ = ["self_crossing"]
@@ -30,21 +30,14 @@ NAMED = 20
 def self_crossing(surface: FittedSurface, parts: Sequence[PatchLattice]) -> Check:
     """Look for places where the surface passes through itself.
 
-    A height field over the map or over its best plane cannot: over each place of its frame it stands once. Any
-    other surface is looked at as triangles between the ends and middles of its spans: a crossing smaller than
-    these is left to OpenCASCADE's test of the file.
+    A height field over one plane cannot: over each place of the plane it stands once. Any other surface is looked at
+    as triangles between the ends and middles of its spans: a crossing smaller than these is left to OpenCASCADE's test
+    of the file.
     """
-    frame = surface.frame
-    if all(plan_map(patch) is not None for patch in surface.patches):
+    if one_sheet(surface.patches):
         text = message(
-            "checks.height-field-over-map",
-            "a height field over the map has one value at each location: it cannot cross itself",
-        )
-        return Check("self-intersection", True, 0, 0, "places", text)
-    if frame == "best-plane":
-        text = message(
-            "checks.height-field-over-plane",
-            "a height field over its best plane has one value at each location: it cannot cross itself",
+            "checks.height-fields-apart",
+            "a height field over one plane has one value at each location: it cannot cross itself",
         )
         return Check("self-intersection", True, 0, 0, "places", text)
     triangles = _triangles(parts)

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from geofit.data.threads import side_by_side
 from geofit.geometry.cells import BATCH, Cells, Place, tabulate
-from geofit.geometry.elevation import plan_map
+from geofit.geometry.elevation import PlanMap, plan_map
+from geofit.geometry.one_sheet import lie_apart
 from geofit.splines import bspline
 from geofit.splines.patch import Patch, Patches
 
@@ -38,8 +39,6 @@ STEPS, LAST = 8, 1e-6
 TOUCHING = 1e-9
 #: From this many points on, compiled loops are worth loading: they take less than half the time.
 COMPILED = 100_000
-#: Shares of their size by which the plans of patches side by side may differ and overlap.
-ONE = 1e-11
 #: How far the control points may be from the plan's map, metres.
 EXACT = 1e-10
 
@@ -210,14 +209,17 @@ def _within(field: _Field, u: Floats, v: Floats, reach: Floats) -> Bools:
 
 def _fields(patches: Patches) -> tuple[_Field, ...]:
     """Return the patches as height fields; none if one of them is none, or has a crease, or they overlap."""
-    fields = tuple(_field(index, patch) for index, patch in enumerate(patches))
+    plans = [plan for patch in patches if (plan := plan_map(patch)) is not None]
+    if len(plans) < len(patches) or not lie_apart(plans, patches):
+        return ()
+    fields = [_field(*one) for one in zip(range(len(patches)), patches, plans, strict=True)]
     found = tuple(field for field in fields if field is not None)
-    return found if len(found) == len(patches) and not _overlap(found) else ()
+    return found if len(found) == len(patches) else ()
 
 
-def _field(index: int, patch: Patch) -> _Field | None:
-    plan, (p, q) = plan_map(patch), patch.degree
-    if plan is None or creases(patch.knots_u, p).any() or creases(patch.knots_v, q).any():
+def _field(index: int, patch: Patch, plan: PlanMap) -> _Field | None:
+    p, q = patch.degree
+    if creases(patch.knots_u, p).any() or creases(patch.knots_v, q).any():
         return None
     u, v = bspline.greville(patch.knots_u, p)[:, None, None], bspline.greville(patch.knots_v, q)[:, None]
     expected = plan.start + u * plan.matrix[:, 0] + v * plan.matrix[:, 1]
@@ -248,18 +250,3 @@ def _derivative(net: Floats, knots: Floats, degree: int, axis: int) -> Floats:
         return np.zeros((1, 1))
     width = knots[degree + 1 : -1] - knots[1 : -degree - 1]
     return np.asarray(degree * np.diff(net, axis=axis) / (width[:, None] if axis == 0 else width))
-
-
-def _overlap(fields: Sequence[_Field]) -> bool:
-    """Whether patches lie over each other in plan, or are laid out in different directions."""
-    first, boxes = fields[0], []
-    for field in fields:
-        if np.abs(field.matrix - first.matrix).max() > ONE * np.abs(first.matrix).max():
-            return True
-        u0, u1, v0, v1 = field.domain
-        at = np.tile(first.inverse @ (field.start - first.start), 2)
-        boxes.append(at + np.array([u0, v0, u1, v1]))
-    low, high = np.split(np.array(boxes), 2, axis=1)
-    common = np.minimum(high[:, None], high) - np.maximum(low[:, None], low)
-    over = (common > ONE * np.ptp(np.concatenate([low, high]), axis=0)).all(axis=2)
-    return bool(over.sum() > len(fields))
