@@ -16,7 +16,7 @@ from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.geometry.frame import Frame
 
-__all__ = ["Loft", "backtracking", "loft"]
+__all__ = ["Loft", "backtracking", "loft", "turning_points"]
 
 Floats = NDArray[np.float64]
 
@@ -135,13 +135,30 @@ def _aligned(lines: list[Floats]) -> list[Floats]:
 
 def _hinges(xyz: Floats, v: Floats) -> Floats:
     """Return v at the turning points of a line, in order: where it runs back by a share of its extent."""
-    from scipy.signal import find_peaks  # loads a third of scipy, for folds only
-
     plan = xyz[:, :2] - xyz[:, :2].mean(axis=0)
     along = plan @ np.linalg.svd(plan, full_matrices=False)[2][0]
-    least = PROMINENT * float(np.ptp(along))
-    turns = np.sort(np.concatenate([find_peaks(sign * along, prominence=least)[0] for sign in (1, -1)]))
+    turns = turning_points(along, PROMINENT * float(np.ptp(along)))
     return np.array([_summit(v[k - 1 : k + 2], along[k - 1 : k + 2]) for k in turns])
+
+
+def turning_points(along: Floats, least: float) -> list[int]:
+    """Return the rows at which values turn back by ``least`` or more: their peaks and pits of that prominence.
+
+    As scipy.signal.find_peaks of the values and of their negatives finds them; loading that takes a third of a second.
+    """
+    turns: list[int] = []
+    peak = pit = way = 0
+    values = along.tolist()
+    for k, value in enumerate(values):
+        peak, pit = (k if value > values[peak] else peak), (k if value < values[pit] else pit)
+        if way >= 0 and values[peak] - value >= least:
+            # Before the first turn there may have been no way up that counts.
+            turns += [peak] * way
+            way, pit = -1, k
+        elif way <= 0 and value - values[pit] >= least:
+            turns += [pit] * -way
+            way, peak = 1, k
+    return turns
 
 
 def _summit(v: Floats, along: Floats) -> float:

@@ -2,10 +2,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.signal import find_peaks
 from truth import EASTING, NORTHING, fold_at, folded, paper_arrangement
 
 from geofit import PointSet
-from geofit.fitting.fold import backtracking, loft
+from geofit.fitting.fold import backtracking, loft, turning_points
 from geofit.geometry.frame import map_frame
 
 
@@ -104,3 +105,13 @@ def test_parameters_do_not_repeat_on_irregular_sections():
     for name in np.unique(points.section):
         v = plane[points.section == name, 1]
         assert len(np.unique(v)) == len(v)
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_turning_points_are_the_peaks_and_pits_of_that_prominence(seed):
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(1, 300))
+    line = np.cumsum(rng.standard_normal(n)) if seed % 2 else np.sin(np.linspace(0, 20, n)) + rng.normal(0, 0.1, n)
+    least = rng.uniform(0.01, 0.6) * np.ptp(line)
+    turns = [find_peaks(sign * line, prominence=least)[0] for sign in (1, -1)] if n > 2 else [[]]
+    assert turning_points(line, least) == sorted(np.concatenate(turns).tolist())

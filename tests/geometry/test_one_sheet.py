@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from tests.surfaces import fold, height_field, split
 
 from geofit.geometry.one_sheet import one_sheet
+from tests.surfaces import fold, height_field, split
 
 
 def turned(patches, seed):
     """The patches in another attitude and place."""
     rotation = Rotation.random(rng=seed).as_matrix()
-    return [replace(patch, control=patch.control @ rotation.T + [300.0, -200.0, 90.0]) for patch in patches]
+    return [replace(patch, control=patch.control @ rotation.T + np.array([300.0, -200.0, 90.0])) for patch in patches]
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -34,7 +34,7 @@ def test_what_folds_or_crosses_is_none():
 def test_patches_that_overlap_are_none(shift):
     first, second = split(height_field(), [500.0], [])
     assert one_sheet([first, second])
-    assert not one_sheet([first, replace(second, control=second.control + [shift, 0.0, 0.0])])
+    assert not one_sheet([first, replace(second, control=second.control + np.array([shift, 0.0, 0.0]))])
 
 
 def test_a_patch_laid_out_in_another_direction_is_none():

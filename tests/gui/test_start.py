@@ -77,7 +77,7 @@ def test_a_splash_comes_first_and_the_window_soon():
     assert min(told["window"] for told, _ in runs) < 3 * peer
 
 
-def test_folds_alone_load_the_signal_processing():
+def test_the_window_loads_no_statistics_and_no_signal_processing():
     code = "import geofit.gui.desktop, sys; print([n for n in ('scipy.signal', 'scipy.stats') if n in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=True)
     assert done.stdout.strip() == "[]"
