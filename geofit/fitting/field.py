@@ -185,6 +185,7 @@ def choose_covariance(
     trend: Floats | None = None,
     measured: Slopes | None = None,
     expected: float = 0.0,
+    needed: float = math.inf,
 ) -> list[tuple[FieldChoice, float]]:
     """Choose the covariance and the noise for data about their trend.
 
@@ -203,6 +204,8 @@ def choose_covariance(
         The trend that was removed, coefficients of 1, u, v; without it nothing holds the plane's slope.
     measured : Slopes, optional
         Measured slopes about the trend, weighted as if the noise were ``expected``, metres.
+    needed : float
+        Known fields that plainly stay above this value are not searched to the end.
 
     Returns
     -------
@@ -242,8 +245,10 @@ def choose_covariance(
         starts = [
             judge.parameters(guess.kappa, guess.rho, guess.stretch) for judge, guess in zip(judges, known, strict=True)
         ]
-        best_of = maximize_over_noise if smoothing is None else Likelihood.optimum
-        found = [best_of(judge, start) for judge, start in zip(judges, starts, strict=True)]
+        found = [
+            maximize_over_noise(judge, start, needed) if smoothing is None else judge.optimum(start)
+            for judge, start in zip(judges, starts, strict=True)
+        ]
     else:
         found = search(likelihood, space.degree, len(plane), smoothing)
     found = sorted(found, key=lambda one: one.value)

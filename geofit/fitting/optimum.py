@@ -33,6 +33,8 @@ SWEEPS, STILL = 50, 1e-4
 #: First step of log rho on another space, and the gain below which its search ends. A coarser limit would leave the
 #: noise to chance where the likelihood is flat, and with it the weight of measured dips.
 ASIDE, SURE = 0.75, 0.02
+#: So many times the gain that a parabola promises are out of reach.
+PLAINLY = 5.0
 
 
 def maximize(likelihood: Likelihood, starts: Sequence[Floats], free: Sequence[int], rival: float = math.inf) -> Optimum:
@@ -71,10 +73,11 @@ def maximize(likelihood: Likelihood, starts: Sequence[Floats], free: Sequence[in
     return likelihood.optimum(at)
 
 
-def maximize_over_noise(likelihood: Likelihood, start: Floats) -> Optimum:
+def maximize_over_noise(likelihood: Likelihood, start: Floats, needed: float = math.inf) -> Optimum:
     """Find the noise of the greatest likelihood, all other parameters being those of the start.
 
-    On spaces of other spans the range is known by then: what changes is what counts as noise.
+    On spaces of other spans the range is known by then: what changes is what counts as noise. The search ends where it
+    plainly stays above the value that is ``needed``.
     """
     low, high = likelihood.bounds()[1]
     if likelihood(start) >= UNSOLVABLE:
@@ -96,7 +99,7 @@ def maximize_over_noise(likelihood: Likelihood, start: Floats) -> Optimum:
         behind, middle, ahead = middle, ahead, min(max(ahead + 2 * (ahead - middle), low), high)
     for _ in range(STEPS):
         vertex, gain = _vertex((behind, middle, ahead), (value(behind), value(middle), value(ahead)))
-        if gain < SURE:
+        if gain < SURE or value(middle) - PLAINLY * gain > needed:
             break
         if value(vertex) < value(middle):
             behind, middle, ahead = middle, vertex, behind if (vertex - middle) * (behind - middle) > 0 else ahead

@@ -6,6 +6,7 @@ smooth: there the likelihood is greater, and so is the accuracy away from the da
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -54,8 +55,8 @@ class Level:
 
 #: The regional field, and the even space that resolves it.
 Choice = tuple[FieldChoice, TensorSpace]
-#: What finds the fields on a space, the best first, given those to begin with.
-Search = Callable[[TensorSpace, Sequence[FieldChoice]], list[Level]]
+#: What finds the fields on a space, the best first, given those to begin with and the value that is of use.
+Search = Callable[[TensorSpace, Sequence[FieldChoice], float], list[Level]]
 
 
 def even_space(area: Rectangle, span: float, degree: int, most: int) -> TensorSpace:
@@ -101,8 +102,8 @@ def choose_field(data: Data, settings: FitSettings, most: int, sketched: Sequenc
     if not known and even_space(data.area, EVEN, degree, SKETCH).size < space.size:
         known = sketched_fields(data, given)
 
-    def on(space: TensorSpace, known: Sequence[FieldChoice]) -> list[Level]:
-        found = choose_covariance(space, points, given, known, data.trend)
+    def on(space: TensorSpace, known: Sequence[FieldChoice], needed: float = math.inf) -> list[Level]:
+        found = choose_covariance(space, points, given, known, data.trend, needed=needed)
         return [Level(space, field, value) for field, value in found]
 
     def resolved(first: Level) -> Level:
@@ -140,7 +141,7 @@ def _lengthened(best: Level, coarser: Iterable[TensorSpace], on: Search) -> Leve
     """
     simplest = best
     for space in coarser:
-        level = _tried(on, space, simplest.field)
+        level = _tried(on, space, simplest.field, simplest.value)
         if level is None or level.value > simplest.value or level.field.noise > LOUDER * best.field.noise:
             break
         simplest = level
@@ -154,17 +155,17 @@ def _shortened(best: Level, finer: Iterable[TensorSpace], on: Search, n: int) ->
             continue
         worth = min(OF_POINTS * n, OF_CONTROL_POINTS * (space.size - best.space.size))
         gain = GAIN if best.field.alpha <= space.degree else max(GAIN, worth)
-        level = _tried(on, space, best.field)
+        level = _tried(on, space, best.field, best.value - gain)
         if level is None or level.value > best.value - gain:
             break
         best = level
     return best
 
 
-def _tried(on: Search, space: TensorSpace, field: FieldChoice) -> Level | None:
+def _tried(on: Search, space: TensorSpace, field: FieldChoice, needed: float) -> Level | None:
     """Return the field on another space; None where rounding leaves its system without a solution there."""
     try:
-        return on(space, [field])[0]
+        return on(space, [field], needed)[0]
     except FitError:
         return None
 
