@@ -185,23 +185,15 @@ class ProjectTree(QWidget):
 
     def choose_horizon(self, name: str) -> None:
         """Go to a horizon; nothing is emitted."""
-        self._silent = True
-        self._go(("horizon", name))
-        self._silent = False
+        self._move(("horizon", name))
 
     def choose_hole(self, name: str) -> None:
         """Go to a hole; nothing is emitted."""
-        self._silent = True
-        self._go(("hole", name))
-        self._silent = False
+        self._move(("hole", name))
 
     def choose_layer(self, key: str) -> None:
         """Go to the row of a layer of the scene; nothing is emitted."""
-        row = self.row(key)
-        self._silent = True
-        self._go(row.target)
-        self._silent = False
-        self._show_form()
+        self._move(self.row(key).target)
 
     def row(self, key: str) -> TreeRow:
         """Return the row of a layer of the scene; KeyError where there is none."""
@@ -359,6 +351,13 @@ class ProjectTree(QWidget):
                 self.view.setCurrentIndex(self._index(row))
                 self.view.scrollTo(self._index(row))
                 return
+
+    def _move(self, target: tuple[str, str]) -> None:
+        """Go to a row without telling others; below the tree is how its layer is drawn."""
+        self._silent = True
+        self._go(target)
+        self._silent = False
+        self._show_form()
 
     def _ask_menu(self, at: QPoint) -> None:
         target = self._target(self.view.indexAt(at))

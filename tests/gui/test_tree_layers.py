@@ -113,6 +113,15 @@ def test_opacity_colour_and_lines_reach_the_layer(shown):
     assert form.legend.sizeHint().height() > 40
 
 
+def test_the_form_goes_with_the_horizon_that_is_chosen_elsewhere(shown):
+    """The form stayed with the row before: its slider changed another horizon than the tree showed as chosen."""
+    shown.choose_layer("ground")
+    shown.choose_horizon("W")
+    shown.form.opacity.setValue(55)
+    assert shown.layers["surface:W"].opacity == 0.55
+    assert shown.layers["ground"].opacity == 0.3
+
+
 def test_a_layer_shows_only_what_it_has(shown):
     shown.choose_layer("holes")
     assert not shown.form.isolines.isVisible()
