@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import inspect
+from contextlib import suppress
 
 import numpy as np
 import pytest
 from refusals import refused
 
 import geofit
+import geofit.caves
+import geofit.medial
+import geofit.pores
 from geofit.data.errors import ArgumentError, SettingsError
 from geofit.implicit import (
     Convolution,
@@ -48,6 +52,14 @@ def read(fit, tmp_path_factory):
     path = tmp_path_factory.mktemp("read") / "T1.igs"
     geofit.write_surface(fit, path)
     return geofit.read_surface(path)
+
+
+@pytest.fixture(scope="module")
+def shots(tmp_path_factory):
+    """Passages along three shots."""
+    path = tmp_path_factory.mktemp("cave") / "a.svx"
+    path.write_text("*begin a\n1 2 10 0 0\n2 3 12 90 5\n3 4 8 45 -5\n*end a\n")
+    return geofit.centreline_body(geofit.io.read_survex(path), radius=1.5)
 
 
 @pytest.mark.parametrize("points", [XYZ, XYZ.tolist(), None, "points.csv"])
@@ -135,7 +147,7 @@ def test_a_volume_without_rock_has_no_contacts():
 FUNCTIONS = sorted(
     {
         getattr(package, name)
-        for package in (geofit, geofit.io)
+        for package in (geofit, geofit.io, geofit.implicit, geofit.pores, geofit.caves, geofit.medial)
         for name in package.__all__
         if inspect.isfunction(getattr(package, name))
     },
@@ -244,6 +256,33 @@ def test_fields_have_values_at_points_only(field, xyz):
             call(*[xyz] * (2 if call.__name__ == "range_in" else 1))
 
 
+@pytest.mark.parametrize("name", [*FIELDS, "passages", "pores' balls"])
+@pytest.mark.parametrize("place", [np.nan, np.inf, -np.inf, 1e300])
+def test_places_that_are_none_have_no_value(name, place, shots):
+    """Compiled loops took the cell of what is not a number for one of theirs, far beyond their arrays."""
+    others = {"passages": shots, "pores' balls": geofit.medial.MetaballBody([[0, 0, 0]], [1.0])}
+    field = others.get(name) or FIELDS[name]
+    for xyz in (np.full((2, 3), place), np.array([[0.1, 0.1, place]])):
+        with np.errstate(all="ignore"), suppress(geofit.GeofitError):
+            value, gradient = field.value(xyz), field.gradient(xyz)
+            assert value.shape == (len(xyz),)
+            assert gradient.shape == xyz.shape
+            if np.isnan(place):
+                assert np.isnan(value).all()
+            # They say nothing of the others.
+            np.testing.assert_array_equal(field.value(np.concatenate([xyz, LINE]))[-3:], field.value(LINE))
+
+
+def test_pores_have_values_at_places_that_are_none():
+    rng = np.random.default_rng(0)
+    volume = geofit.RockVolume(rng.random((8, 8, 8)) > 0.4, pore=True, voxel=1e-6)
+    body = geofit.pore_surface(volume)
+    places = np.array([[np.nan] * 3, [4e-6, 4e-6, np.nan], [np.inf] * 3, [1e300, 0, 0], [4e-6] * 3])
+    with np.errstate(all="ignore"):
+        assert np.isnan(body.value(places)).tolist() == [True, True, False, False, False]
+        assert np.isfinite(body.gradient(places)).all(axis=1).tolist() == [False, False, True, True, True]
+
+
 def test_boxes_have_two_corners_each():
     with refused(geofit.errors.SettingsError, "implicit.corners-differ", lower=2, upper=3):
         FIELDS["quadric"].range_in(np.zeros((2, 3)), np.ones((3, 3)))
@@ -264,6 +303,47 @@ def test_boxes_have_two_corners_each():
 def test_shapes_are_those_of_the_docstring(call, argument, needed):
     with refused(ArgumentError, "data.argument-shape-unfit", argument=argument, needed=needed):
         call()
+
+
+@pytest.mark.parametrize(
+    ("call", "argument", "code"),
+    [
+        (lambda: geofit.PointSet(XYZ, kind=[[1, 2], [3]]), "kind", "data.rows-unequal"),
+        (lambda: geofit.RockVolume([[1, 2], [3]]), "array", "data.rows-unequal"),
+        (lambda: FunctionField(np.sum, np.sum, [[1, 2], [3]]), "bounds", "data.rows-unequal"),
+        (lambda: TriangleMesh(XYZ, [[1, 2], [3]]), "triangles", None),
+        (lambda: TriangleMesh(XYZ, None), "triangles", None),
+        (lambda: Lattice([0, 0, 0], 1.0, np.zeros((3, 2))), "shape", None),
+        (lambda: geofit.pores.surface_area(np.ones((3, 3, 3)), ()), "edges", None),
+        (lambda: geofit.pores.surface_area(np.ones((3, 3, 3)), ("a", 1, 2)), "edges", None),
+        (lambda: geofit.pores.kozeny_permeability(0.2, 1e300), "diameter", "data.finite-needed"),
+        (lambda: geofit.io.write_section_csv({}, ""), "path", "data.text-unusable"),
+        (lambda: geofit.io.write_section_csv({}, "a\0b"), "path", "data.text-unusable"),
+    ],
+)
+def test_what_ends_in_an_error_of_a_library_names_the_argument(call, argument, code):
+    with pytest.raises(ArgumentError) as told:
+        call()
+    params = told.value.message.params
+    assert str(params["argument"]).startswith(argument)
+    assert "fault" not in params or params["fault"].code == code
+
+
+def test_voxels_have_6_or_26_neighbours():
+    with refused(geofit.pores.VolumeError, "pores.neighbours-unknown", count=18):
+        geofit.pores.euler_number(np.ones((3, 3, 3)), neighbours=18)
+
+
+def test_a_ratio_to_no_porosity_is_refused():
+    with refused(geofit.pores.VolumeError, "pores.no-porosity-before"):
+        geofit.pores.kozeny_ratio(0, 0.2)
+
+
+def test_a_message_shows_what_its_format_does_not_fit():
+    for share in (10**400, np.array([1 + 2j])):
+        with pytest.raises(geofit.GeofitError) as told:
+            geofit.metaballs(geofit.RockVolume(np.eye(4)[None] > 0, pore=True), share=share)
+        assert str(told.value)
 
 
 def test_a_body_is_selected_by_one_truth_for_each_place():

@@ -15,6 +15,7 @@ from geofit.bodies.fitted import Fitted
 from geofit.bodies.implicit_body import ImplicitBody
 from geofit.bodies.region import Region
 from geofit.bodies.settings import BodySettings
+from geofit.data.given import arguments_checked
 
 if TYPE_CHECKING:
     from geofit.bodies.simulate import BodyVolumes
@@ -29,6 +30,7 @@ OVERVIEW = (48, 160)
 BETWEEN_HOLES = 3
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class BodyFit(ImplicitBody):
     """A body fitted to what holes, outlines or points say of it. Coordinates are map coordinates in metres.

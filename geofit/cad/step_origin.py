@@ -67,7 +67,7 @@ def offset_of(origin: Origin, corners: Iterable[ArrayLike]) -> Floats:
         raise _unusable(origin)
     try:
         datum = np.asarray(origin, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise _unusable(origin) from None
     if datum.shape != (3,) or not (np.abs(datum) <= LARGEST).all():
         raise _unusable(origin)

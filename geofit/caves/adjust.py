@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from geofit.caves.survey import LONGEST, Survey, SurveyError, first_stations
 from geofit.data.columns import refuse_far
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import Untranslated, message
 
 __all__ = ["AdjustedSurvey", "Loop", "adjust_survey"]
@@ -112,6 +113,7 @@ class AdjustedSurvey:
         return sigma
 
 
+@arguments_checked
 def adjust_survey(survey: Survey, *, length_error: float = 0.05, angle_error: float = 1.0) -> AdjustedSurvey:
     """Return the coordinates of the stations, misclosures spread by least squares.
 

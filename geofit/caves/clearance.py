@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.caves.adjust import AdjustedSurvey
 from geofit.caves.body import PassageBody
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 
 __all__ = ["Clearance", "clearance", "excavation_points"]
@@ -56,6 +57,7 @@ class Clearance:
         return float(self.distance[self.nearest])
 
 
+@arguments_checked
 def clearance(
     body: PassageBody,
     excavation: ArrayLike,

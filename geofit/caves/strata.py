@@ -4,29 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geofit.caves.body import PassageBody
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
+from geofit.surfaces.protocol import HasElevation
 
-__all__ = ["Horizon", "Stratum", "strata"]
+__all__ = ["Stratum", "strata"]
 
 Floats = NDArray[np.float64]
 
 #: Shots are cut into pieces of this length to find horizons, metres; within a piece a crossing is linear.
 _PIECE = 0.5
-
-
-class Horizon(Protocol):
-    """Anything with a height at map coordinates: a :class:`geofit.HorizonFit`, a ground."""
-
-    def elevation(self, x: Floats, y: Floats, /) -> Floats:
-        """Return heights (n,) at x (n,), y (n,), nan where there is none."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -53,14 +46,17 @@ class Stratum:
     volume: float
 
 
-def strata(body: PassageBody, horizons: Mapping[str, Horizon], *, spacing: float | None = None) -> tuple[Stratum, ...]:
+@arguments_checked
+def strata(
+    body: PassageBody, horizons: Mapping[str, HasElevation], *, spacing: float | None = None
+) -> tuple[Stratum, ...]:
     """Return length and volume of passages in each stratum; they add up to those of the body.
 
     Parameters
     ----------
     body : PassageBody
         The passages.
-    horizons : mapping of str to Horizon
+    horizons : mapping of str to HasElevation
         Surfaces from the top down. Where one lies above an earlier one, it is taken at the height of that one.
     spacing : float, optional
         As in :meth:`PassageBody.volume`.
@@ -97,13 +93,13 @@ def strata(body: PassageBody, horizons: Mapping[str, Horizon], *, spacing: float
     )
 
 
-def _heights(horizons: Mapping[str, Horizon], x: Floats, y: Floats) -> Floats:
+def _heights(horizons: Mapping[str, HasElevation], x: Floats, y: Floats) -> Floats:
     """Return the heights (k, n) of the horizons, none above the one before it."""
     heights = np.stack([np.broadcast_to(np.asarray(h.elevation(x, y), float), x.shape) for h in horizons.values()])
     return np.asarray(np.minimum.accumulate(heights, axis=0))
 
 
-def _lengths(body: PassageBody, horizons: Mapping[str, Horizon]) -> tuple[Floats, float]:
+def _lengths(body: PassageBody, horizons: Mapping[str, HasElevation]) -> tuple[Floats, float]:
     """Return the metres of passage in each stratum, and where a horizon has no height."""
     sweeps = body.sweeps
     counted = np.flatnonzero(body.adjusted.survey.counted[body.sections.shot])

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import GeofitError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import Untranslated, message
 from geofit.data.site import ImportIssue, TableCount
 
@@ -153,10 +154,12 @@ class Survey:
         first = np.unique(labels, return_index=True)[1]
         return np.asarray(np.argsort(np.argsort(first))[labels], dtype=np.int64)
 
+    @arguments_checked
     def with_fixed(self, fixed: Mapping[str, tuple[float, float, float]]) -> Survey:
         """Return the survey with more stations fixed; the coordinates given here replace earlier ones."""
         return replace(self, fixed={**self.fixed, **fixed})
 
+    @arguments_checked
     def connected_to(self, station: str) -> Survey:
         """Return the part of the survey that is connected to a station.
 

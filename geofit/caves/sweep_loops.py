@@ -167,7 +167,7 @@ def _loops() -> tuple[Any, Any, Any, Any]:
             listed = 0 <= i < shape[0] and 0 <= j < shape[1] and 0 <= k < shape[2]
             cell = (i * shape[1] + j) * shape[2] + k if listed else 0
             first, last = (start[cell], start[cell + 1]) if listed else (0, len(length))
-            best = second = np.inf
+            best = second = np.nan if np.isnan(x + y + z) else np.inf
             owner = -1
             for m in range(first, last):
                 n = member[m] if listed else m

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from geofit.caves.body import THIN, PassageBody, across
 from geofit.caves.sweeps import swept_volumes
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 
 __all__ = ["VolumeEstimate", "volume_estimate"]
@@ -53,6 +54,7 @@ class VolumeEstimate:
         return self.volume + _P90 * self.sigma
 
 
+@arguments_checked
 def volume_estimate(
     body: PassageBody,
     *,

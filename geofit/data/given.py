@@ -13,7 +13,7 @@ from difflib import get_close_matches
 from functools import cache, partial, wraps
 from inspect import Parameter, Signature, isfunction, signature
 from numbers import Integral, Real
-from typing import Any, Literal, NamedTuple, TypeVar, cast, get_origin
+from typing import Any, Literal, NamedTuple, NoReturn, TypeVar, cast, get_origin
 
 import numpy as np
 
@@ -24,6 +24,9 @@ from geofit.data.numbers import shown
 __all__ = ["FIT", "POINTS", "SETTINGS", "SITE", "SURFACES", "arguments_checked", "keywords_known", "require_kind"]
 
 T = TypeVar("T", bound=Callable[..., Any])
+
+#: Numbers from which on squares and products overflow.
+HUGE = 1e100
 
 POINTS = message("data.point-set-needed", "a PointSet is needed: PointSet(xyz).")
 SETTINGS = message("data.fit-settings-needed", "settings are needed: FitSettings(epsilon=0.5).")
@@ -58,6 +61,7 @@ _CLASSES = {
     **{
         kind: _given_by(kind, call)
         for kind, call in (
+            ("AdjustedSurvey", "geofit.caves.adjust_survey(survey)"),
             ("BodyData", "BodyData(contacts, normals=normals)"),
             ("BodySettings", "BodySettings(epsilon=0.5)"),
             ("Boreholes", "geofit.io.read_boreholes(collar, survey, intervals)"),
@@ -67,7 +71,9 @@ _CLASSES = {
             ("MaximalBalls", "maximal_balls(volume)"),
             ("Mesh", "surface.triangulate(0.05)"),
             ("MorphBody", "morph(a, b)(0.5)"),
+            ("PassageBody", "centreline_body(survey)"),
             ("PoreNetwork", "pore_network(volume)"),
+            ("PoreSurface", "pore_surface(volume)"),
             ("RockVolume", "RockVolume(array, pore=0, voxel=1e-6)"),
             ("Source", "geofit.io.Source(path=path)"),
             ("Survey", "geofit.io.read_survex(path)"),
@@ -108,7 +114,7 @@ def _is_numeric(value: Any) -> bool:
         array = np.asarray(value)
     except (TypeError, ValueError):  # rows of several lengths, an object without numbers
         return False
-    return not array.size or array.dtype.kind in "biufc" or (array.dtype.kind == "O" and all(map(_is_real, array.flat)))
+    return not array.size or array.dtype.kind in "biuf" or (array.dtype.kind == "O" and all(map(_is_real, array.flat)))
 
 
 def _is_real(value: Any) -> bool:
@@ -133,7 +139,7 @@ _NUMBERS = _Kind(
 )
 _GIVEN = _NUMBERS._replace(fits=lambda value: value is not None, number=False)
 _WHOLE = _Kind(
-    lambda value: isinstance(value, Integral) and _is_real(value),
+    lambda value: not isinstance(value, bool) and isinstance(value, Integral) and _is_real(value),
     message("data.whole-number-needed", "a whole number (int)"),
     number=True,
 )
@@ -153,6 +159,7 @@ _WRITTEN = {
     "ArrayLike": _NUMBERS,
     "NDArray": _NUMBERS,
     "Floats": _NUMBERS,
+    "Ints": _NUMBERS,
     "Progress": _CALL,
     "Callable": _CALL,
     "Path": _PATH,
@@ -200,6 +207,7 @@ def arguments_checked(what: T) -> T:
             given = _bound(function, known, args, kwargs)
             _compare(known, given, every)
             _compare_shapes(what.__doc__, given)
+            _compare_values(given)
             raise
         if isinstance(what, type):
             given = _bound(function, known, args, kwargs)
@@ -238,7 +246,10 @@ def _compare_shapes(doc: str | None, given: Mapping[str, Any], *, empty: bool = 
     letters: dict[str, int] = {}
     for name, shapes in _shapes(doc or "").items():
         value = given.get(name)
-        if value is None or (empty and not np.size(value)):
+        if value is None:
+            continue
+        _refuse_ragged(name, value)
+        if empty and not np.size(value):
             continue
         shape = np.shape(value)
         if not any(len(shape) == len(one) and all(map(partial(_is_side, letters), one, shape)) for one in shapes):
@@ -258,19 +269,57 @@ def _is_side(letters: dict[str, int], stated: str, length: int) -> bool:
     return length == (int(stated) if stated.isdigit() else letters.setdefault(stated, length))
 
 
+def _compare_values(given: Mapping[str, Any]) -> None:
+    """Refuse values that no function can work with: the last resort once one of them ended in an error."""
+    for name, value in given.items():
+        _refuse_ragged(name, value)
+        if isinstance(value, str | os.PathLike):
+            if not os.fspath(value) or "\0" in str(value):
+                _refuse_value(name, message("data.text-unusable", "it is empty or holds a NUL character."))
+        elif isinstance(value, Real | list | tuple | np.ndarray):
+            array = np.asarray(value)
+            if array.dtype.kind == "f" and not (np.abs(array) < HUGE).all():
+                needed = message("data.finite-needed", "finite numbers below {most:.0e} are needed.", most=HUGE)
+                _refuse_value(name, needed)
+
+
+def _refuse_ragged(name: str, value: Any) -> None:
+    if isinstance(value, list | tuple):
+        try:
+            np.asarray(value)
+        except ValueError:
+            needed = message("data.rows-unequal", "its rows have unequal lengths; an array is needed.")
+            _refuse_value(name, needed)
+
+
+def _refuse_value(name: str, fault: Message) -> NoReturn:
+    text = message("data.argument-unusable", "{argument} cannot be used: {fault}", argument=name, fault=fault)
+    raise ArgumentError(text) from None
+
+
 def _of_numbers(kind: _Kind) -> bool:
     return kind.number or any(map(_of_numbers, kind.inner))
 
 
 def keywords_known(cls: T) -> T:
-    """Refuse arguments that a class does not have, or lacks; it checks their values itself."""
+    """Refuse arguments that a class does not have, or lacks; it checks their values itself.
+
+    Where it ends in another error all the same, they are looked at as :func:`arguments_checked` does.
+    """
     made: Callable[..., None] = cls.__init__
     known = signature(made)
 
     @wraps(made)
     def call(*args: Any, **kwargs: Any) -> None:
-        _bound(made, known, args, kwargs)
-        made(*args, **kwargs)
+        given = _bound(made, known, args, kwargs)
+        try:
+            made(*args, **kwargs)
+        except GeofitError:
+            raise
+        except Exception:
+            _compare(known, given, {one.name: tuple(_kinds(one.annotation, made)) for one in known.parameters.values()})
+            _compare_values(given)
+            raise
 
     cls.__init__ = call  # type: ignore[method-assign]
     return cls
@@ -381,10 +430,22 @@ def _parsed(node: ast.expr, names: Mapping[str, Any]) -> Iterator[_Kind]:
         case ast.Subscript(value=ast.Name(id=("Sequence" | "Collection" | "Mapping") as name), slice=inner):
             last = inner.elts[-1] if isinstance(inner, ast.Tuple) else inner
             yield _WRITTEN[name]._replace(inner=tuple(_parsed(last, names)))
+        case ast.Subscript(value=ast.Name(id="tuple"), slice=ast.Tuple(elts=parts)):
+            yield _of_length(len(parts), parts, names)
         case ast.Subscript(value=ast.Name(id=name)) | ast.Name(id=name):
             yield _named(name, names.get(name))
         case _:
             yield _ANY
+
+
+def _of_length(n: int, parts: list[ast.expr], names: Mapping[str, Any]) -> _Kind:
+    """Return what ``tuple[float, float, float]`` or ``tuple[Hole, ...]`` allows; mixed parts are not looked at."""
+    if isinstance(parts[-1], ast.Constant) and parts[-1].value is ...:
+        return _SEVERAL._replace(inner=tuple(_parsed(parts[0], names)))
+    alike = len({ast.dump(part) for part in parts}) == 1
+    needed = message("data.several-needed-of-number", "{count} values, such as a tuple of them", count=n)
+    inner = tuple(_parsed(parts[0], names)) if alike else ()
+    return _Kind(lambda value: _is_several(value) and len(value) == n, needed, inner)
 
 
 def _named(name: str, value: Any) -> _Kind:

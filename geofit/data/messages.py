@@ -10,6 +10,7 @@ Templates are literals, so that Babel can extract them: ``pybabel extract -k mes
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from gettext import NullTranslations
 from string import Formatter
@@ -149,7 +150,10 @@ def render(value: Any, catalogue: NullTranslations) -> Any:
         fields = {name: render(param, catalogue) for name, param in value.params.items()}
         if not fields:
             return template
-        return _WITH_LENGTHS.vformat(template, (), fields) if _LENGTH in template else template.format(**fields)
+        if _LENGTH not in template:
+            with suppress(OverflowError, TypeError, ValueError):
+                return template.format(**fields)
+        return _WITH_LENGTHS.vformat(template, (), fields)
     if isinstance(value, tuple) and value and all(isinstance(item, (Message, str)) for item in value):
         return _joined([str(render(item, catalogue)) for item in value], catalogue)
     if isinstance(value, str):
@@ -166,10 +170,18 @@ class _Negative(float):
 
 
 class _WithLengths(Formatter):
-    """``str.format`` that knows one more format: ``{sigma:length}``, digits as :func:`rounded_metres` chooses them."""
+    """``str.format`` that knows one more format: ``{sigma:length}``, digits as :func:`rounded_metres` chooses them.
+
+    What a format does not fit (a word where a number was due) is shown as it was given.
+    """
 
     def format_field(self, value: Any, format_spec: str) -> str:
-        return rounded_metres(value) if format_spec == "length" else str(super().format_field(value, format_spec))
+        if format_spec == "length":
+            return rounded_metres(value)
+        try:
+            return str(super().format_field(value, format_spec))
+        except (OverflowError, TypeError, ValueError):
+            return folded(repr(value))
 
 
 _LENGTH = ":length}"

@@ -416,7 +416,7 @@ def _names(surface: HorizonFit, which: NDArray[np.bool_]) -> tuple[Message | str
 def _target(surface: HorizonFit, model: Model, point: int | ArrayLike) -> tuple[Floats, Floats, Message]:
     """Return the place (1, 2) on the parametrization, the value (1,) or (1, 3) wanted there, and what to call it."""
     parametrization = model.problem.parametrization
-    if isinstance(point, (int, np.integer)):
+    if isinstance(point, (int, np.integer)) and not isinstance(point, bool):
         if not 0 <= point < len(surface.points):
             raise FitError(
                 message(

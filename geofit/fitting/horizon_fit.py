@@ -214,9 +214,14 @@ class HorizonFit:
         return remade.checked(given.conflicts, (*given.parametrization.notes, *net.notes))
 
     def ended_at(self, outline: Floats) -> HorizonFit:
-        """Return a fit that ends at an outline (k, 2), map coordinates, checked anew within it.
+        """Return a fit that ends at an outline, checked anew within it.
 
         What is made from it later, by manual edits or by a separation, ends there too.
+
+        Parameters
+        ----------
+        outline : (k, 2) array
+            Corners in map coordinates.
         """
         assert self.model is not None
         assert self.accuracy is not None

@@ -21,9 +21,9 @@ def nearest_cone(xyz: Floats, points: Floats, radii: Floats) -> tuple[Floats, Fl
     s = (r0 - r1) / length. A point belongs to the mantle if the normal through it meets the axis between the ends.
     """
     count, cones = xyz.shape[0], points.shape[0] - 1
-    value, gradient = np.empty(count), np.empty((count, 3))
+    value, gradient = np.empty(count), np.full((count, 3), np.nan)
     for i in range(count):
-        best = math.inf
+        best = math.nan if math.isnan(xyz[i].sum()) else math.inf
         for k in range(cones):
             r0, r1 = radii[k], radii[k + 1]
             ax, ay, az = (

@@ -183,7 +183,8 @@ class Convolution:
     def value(self, xyz: Floats) -> Floats:
         """Return phi at (n, 3) points."""
         xyz = points_of(xyz)
-        total = np.zeros(len(xyz))
+        # Of a place that is none there is no value.
+        total = np.where(np.isnan(xyz.sum(axis=1)), np.nan, 0.0)
         for point, segment in self._pairs(xyz):
             value = self._integrals(xyz[point], segment)[0]
             total += np.bincount(point, value, minlength=len(xyz))
@@ -208,7 +209,8 @@ class Convolution:
         for first in range(0, len(xyz), count):
             part = xyz[first : first + count]
             # Segments far from the whole part drop out at once: parts of a lattice are compact.
-            near = np.nonzero((low <= part.max(axis=0)).all(axis=1) & (high >= part.min(axis=0)).all(axis=1))[0]
+            least, most = np.fmin.reduce(part), np.fmax.reduce(part)
+            near = np.nonzero((low <= most).all(axis=1) & (high >= least).all(axis=1))[0]
             inside = np.ones((len(part), len(near)), bool)
             for axis in range(3):
                 inside &= (part[:, axis, None] >= low[near, axis]) & (part[:, axis, None] <= high[near, axis])

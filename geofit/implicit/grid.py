@@ -99,7 +99,7 @@ class SplineGrid:
 
         (low, near), (high, far) = map(self._places, box_corners(lower, upper))
         cells = np.array(self.lattice.shape) - 2
-        first = np.minimum(np.floor(low).astype(np.int64), cells)
+        first = np.clip(np.floor(low).astype(np.int64), 0, cells)
         last = np.minimum(np.maximum(np.ceil(high).astype(np.int64) - 1, first), cells) + 3
         lowest, highest = coefficient_range(first, last, self.coefficients)
         beyond = np.linalg.norm(np.maximum(np.abs(near), np.abs(far)), axis=1)

@@ -32,7 +32,8 @@ def spline_value(places: Floats, c: Floats) -> Floats:
     cell = np.empty(3, np.int64)
     for p in range(n):
         for a in range(3):
-            cell[a] = min(math.floor(places[p, a]), c.shape[a] - 4)
+            # What is not a number has a cell, too: its value is not one either.
+            cell[a] = max(min(math.floor(places[p, a]), c.shape[a] - 4), 0)
             _weights(places[p, a] - cell[a], w[a])
         total = 0.0
         for i in range(4):
@@ -54,7 +55,8 @@ def spline_jet(places: Floats, c: Floats) -> tuple[Floats, Floats, Floats]:
     cell = np.empty(3, np.int64)
     for p in range(n):
         for a in range(3):
-            cell[a] = min(math.floor(places[p, a]), c.shape[a] - 4)
+            # What is not a number has a cell, too: its value is not one either.
+            cell[a] = max(min(math.floor(places[p, a]), c.shape[a] - 4), 0)
             u = places[p, a] - cell[a]
             v = 1 - u
             _weights(u, w[a])

@@ -111,6 +111,15 @@ def fit_metaballs(
                 most=most,
             )
         )
+    if not (alpha >= 0 and beta >= 0):
+        raise SettingsError(
+            message(
+                "implicit.metaball-weights-negative",
+                "alpha is {alpha} and beta is {beta}; give weights of 0 or more.",
+                alpha=alpha,
+                beta=beta,
+            )
+        )
     if len(points) < 10:
         raise FitError(
             message("implicit.too-few-samples", "{count} samples do not fix a body: give 10 or more", count=len(points))

@@ -54,6 +54,11 @@ def even_samples(field: Field, mesh: TriangleMesh, count: int, *, seed: int = 0)
     """
     from scipy.spatial import KDTree
 
+    count = int(count)
+    if seed < 0:
+        raise SettingsError(
+            message("implicit.seed-negative", "The seed is {seed}; give a whole number of 0 or more.", seed=seed)
+        )
     if count < 1 or not len(mesh.triangles):
         raise SettingsError(
             message(

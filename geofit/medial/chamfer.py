@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.medial.weights import INTEGER_WEIGHTS
 
@@ -33,6 +34,7 @@ def step_weights(weights: ArrayLike) -> NDArray[Any]:
     return np.asarray(w[np.abs(FORWARD).sum(axis=1) - 1])
 
 
+@arguments_checked
 def chamfer_distance(
     void: ArrayLike, weights: ArrayLike = INTEGER_WEIGHTS, *, outside_is_rock: bool = True
 ) -> NDArray[Any]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from geofit.bodies.implicit_body import ImplicitBody
 from geofit.data.errors import FitError
+from geofit.data.given import arguments_checked
 from geofit.data.messages import Message, message
 from geofit.implicit.field import Field
 from geofit.implicit.isosurface import isosurface
@@ -37,6 +38,7 @@ GEOMETRY_ONLY = message(
 MOST = 1024
 
 
+@arguments_checked
 @dataclass(frozen=True, eq=False)
 class MorphBody(ImplicitBody):
     """The body at one moment between two surveys. Coordinates of its meshes are map coordinates in metres.

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Literal, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.data.columns import measurable_places
 from geofit.data.messages import message
 from geofit.data.progress import Progress
 from geofit.implicit.grid import SplineGrid, spline_grid
@@ -226,4 +227,4 @@ def leg_between(
 def _seed_places(seeds: bool | Sequence[ArrayLike], unreached: Sequence[LonePart], origin: Floats) -> Floats:
     if isinstance(seeds, bool):
         return np.array([part.deepest for part in unreached if seeds]).reshape(-1, 3) - origin
-    return np.asarray(seeds, float).reshape(-1, 3) - origin
+    return measurable_places(cast(ArrayLike, seeds)) - origin

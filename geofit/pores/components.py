@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.pores.volume import RockVolume
+from geofit.data.given import arguments_checked
+from geofit.data.messages import message
+from geofit.pores.volume import RockVolume, VolumeError
 
 __all__ = ["Connectivity", "connectivity", "euler_number"]
 
@@ -43,6 +45,7 @@ class Connectivity:
     euler: int
 
 
+@arguments_checked
 def connectivity(volume: RockVolume) -> Connectivity:
     """Count connected parts of the pore space and what they reach."""
     from scipy import ndimage
@@ -69,8 +72,16 @@ def connectivity(volume: RockVolume) -> Connectivity:
     )
 
 
+@arguments_checked
 def euler_number(pore: NDArray[np.bool_], *, neighbours: int = 6) -> int:
     """Return the Euler number of a voxel body connected by faces (6) or by faces, edges and corners (26).
+
+    Parameters
+    ----------
+    pore : (nx, ny, nz) array of bool
+        The body.
+    neighbours : {6, 26}
+        Which voxels are connected.
 
     Examples
     --------
@@ -79,6 +90,15 @@ def euler_number(pore: NDArray[np.bool_], *, neighbours: int = 6) -> int:
     >>> euler_number(ring)
     0
     """
+    if neighbours not in (6, 26):
+        raise VolumeError(
+            message(
+                "pores.neighbours-unknown",
+                "Voxels have 6 or 26 neighbours, not {count}: give neighbours=6 or neighbours=26.",
+                count=neighbours,
+            )
+        )
+    pore = np.asarray(pore, bool)
     if neighbours == 26:
         # Closed voxels: each corner, edge and face of the grid counts once if any voxel round it is pore.
         wide = np.pad(pore, 1)

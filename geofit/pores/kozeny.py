@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.pores.volume import VolumeError
 
@@ -11,6 +12,7 @@ __all__ = ["CARMAN", "grain_diameter", "kozeny_permeability", "kozeny_ratio"]
 CARMAN = 1.0 / 180.0
 
 
+@arguments_checked
 def kozeny_permeability(porosity: float, diameter: float, constant: float = CARMAN) -> float:
     """Return K in square metres.
 
@@ -41,15 +43,21 @@ def kozeny_permeability(porosity: float, diameter: float, constant: float = CARM
     return constant * porosity**3 * diameter**2 / (1.0 - porosity) ** 2
 
 
+@arguments_checked
 def kozeny_ratio(before: float, after: float) -> float:
-    """Return K after / K before for two porosities with the same grains.
+    """Return K after / K before for two porosities with the same grains; that before must be above 0.
 
     Examples
     --------
     >>> round(0.075 * kozeny_ratio(0.178, 0.171), 4)
     0.0654
     """
-    return kozeny_permeability(after, 1.0) / kozeny_permeability(before, 1.0)
+    first = kozeny_permeability(before, 1.0)
+    if first == 0:
+        raise VolumeError(
+            message("pores.no-porosity-before", "The porosity before is 0: no ratio to it exists. Give one above 0.")
+        )
+    return kozeny_permeability(after, 1.0) / first
 
 
 def grain_diameter(porosity: float, specific_surface: float) -> float:

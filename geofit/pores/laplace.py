@@ -15,6 +15,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.given import arguments_checked
 from geofit.data.messages import Message, message
 from geofit.data.progress import Progress, tell
 from geofit.pores.components import connectivity
@@ -69,6 +70,7 @@ def _numbered(inside: NDArray[np.bool_]) -> tuple[NDArray[np.int32], NDArray[np.
     return number, order
 
 
+@arguments_checked
 def laplace_permeability(volume: RockVolume, *, progress: Progress | None = None) -> Permeability:
     """Return the permeability along each axis from a Laplace solve on the voxels and the work of viscosity.
 

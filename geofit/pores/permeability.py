@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.given import arguments_checked
 from geofit.data.messages import Message, message
 from geofit.pores.network import AXES, FaceThroats, PoreNetwork, Throats
 
@@ -49,6 +50,7 @@ class Permeability:
         return k0, k1, k2
 
 
+@arguments_checked
 def network_permeability(network: PoreNetwork) -> Permeability:
     """Return the permeability of a network along each axis.
 

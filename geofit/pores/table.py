@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geofit.data.given import arguments_checked
 from geofit.data.progress import Progress, tell
 from geofit.pores.components import Connectivity, connectivity
 from geofit.pores.crofton import surface_area
@@ -68,6 +69,7 @@ class BeforeAfter:
     kozeny_ratio: float
 
 
+@arguments_checked
 def before_after(
     volume: RockVolume,
     network: PoreNetwork,

@@ -17,10 +17,11 @@ if TYPE_CHECKING:
     from geofit.caves.adjust import AdjustedSurvey
     from geofit.caves.body import PassageBody
     from geofit.caves.clearance import Clearance
-    from geofit.caves.strata import Horizon, Stratum
+    from geofit.caves.strata import Stratum
     from geofit.caves.survey import Survey
     from geofit.caves.uncertainty import VolumeEstimate
     from geofit.implicit.mesh import TriangleMesh
+    from geofit.surfaces.protocol import HasElevation
 
 __all__ = ["CaveRun", "cut_passages", "measure_passages", "read_survey", "write_passages"]
 
@@ -119,7 +120,7 @@ def measure_passages(
     radius: float | None = None,
     spacing: float | None = None,
     excavation: Survey | None = None,
-    horizons: Mapping[str, Horizon] | None = None,
+    horizons: Mapping[str, HasElevation] | None = None,
     progress: Progress | None = None,
 ) -> CaveRun:
     """Adjust a survey and make its passages a body.
@@ -166,7 +167,7 @@ def measure_passages(
     return cut_passages(run, horizons, progress) if horizons else run
 
 
-def cut_passages(run: CaveRun, horizons: Mapping[str, Horizon], progress: Progress | None = None) -> CaveRun:
+def cut_passages(run: CaveRun, horizons: Mapping[str, HasElevation], progress: Progress | None = None) -> CaveRun:
     """Return the run with its passages cut by horizons, from the top down.
 
     Raises

@@ -17,8 +17,8 @@ from geofit.project.cave_run import CaveRun, cut_passages, measure_passages, rea
 if TYPE_CHECKING:
     from geofit.caves.adjust import AdjustedSurvey
     from geofit.caves.body import PassageBody
-    from geofit.caves.strata import Horizon
     from geofit.caves.survey import Survey
+    from geofit.surfaces.protocol import HasElevation
 
 __all__ = [
     "WallRings", "cut_view", "measured_view", "passage_mesh", "read_adjusted", "shot_states", "wall_rings",
@@ -57,13 +57,13 @@ def read_adjusted(path: Path, *, progress: Progress | None = None) -> AdjustedSu
 
 
 def measured_view(
-    survey: Survey, radius: float | None, horizons: Mapping[str, Horizon], *, progress: Progress | None = None
+    survey: Survey, radius: float | None, horizons: Mapping[str, HasElevation], *, progress: Progress | None = None
 ) -> CaveRun:
     """Make the passages a body, as :func:`geofit.project.cave_run.measure_passages`."""
     return measure_passages(survey, radius=radius, horizons=horizons, progress=progress)
 
 
-def cut_view(run: CaveRun, horizons: Mapping[str, Horizon], *, progress: Progress | None = None) -> CaveRun:
+def cut_view(run: CaveRun, horizons: Mapping[str, HasElevation], *, progress: Progress | None = None) -> CaveRun:
     """Return the run with its passages cut by horizons; without horizons, uncut."""
     return cut_passages(run, horizons, progress) if horizons else replace(run, strata=())
 

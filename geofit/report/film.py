@@ -61,7 +61,7 @@ def write_film(bodies: Sequence[MorphBody], path: str | PathLike[str]) -> Path:
     -----
     One camera from the south-west; the first and the last body are drawn sheer behind each frame: ``docs/morph.md``.
     """
-    if not bodies:
+    if len(bodies) == 0:
         raise SettingsError(message("report.film-without-frames", "A film of no frames; give at least one body."))
     labels = [
         f"{body.date.isoformat() if body.date else f'tau {body.tau:.2f}'}   {body.volume:,.0f} m3   "

@@ -52,6 +52,14 @@ class Fault:
                     shape=line.shape,
                 )
             )
+        if not np.ptp(line, axis=0).any():
+            raise SettingsError(
+                message(
+                    "site.fault-is-a-point",
+                    "The trace of fault {number} is a single place; at least two different corners are needed.",
+                    number=number + 1,
+                )
+            )
         return cls(f"fault {number + 1}", None, _left_of(line, area))
 
     def side(self, xyz: Floats) -> NDArray[np.int64]:

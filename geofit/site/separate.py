@@ -18,6 +18,7 @@ from scipy.sparse import block_array, block_diag, csc_array, csr_array, diags_ar
 from scipy.sparse.linalg import SuperLU, splu
 from threadpoolctl import threadpool_limits
 
+from geofit.data.columns import LARGEST
 from geofit.data.errors import SettingsError
 from geofit.data.given import FIT, arguments_checked, require_kind
 from geofit.data.messages import EMPTY, Message, message
@@ -120,15 +121,17 @@ def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str
     """
     for name, surface in surfaces.items():
         require_kind(f"surfaces[{name!r}]", surface, HorizonFit, FIT)
+    sequence = list(sequence)
     require_sequence(surfaces, sequence)
-    if not sequence:
+    if len(sequence) < 2:
         return Separation(dict(surfaces), {}, ())
-    if not (minimum >= 0 and np.isfinite(minimum)):
+    if not 0 <= minimum <= LARGEST:
         raise SettingsError(
             message(
                 "site.least-thickness-negative",
-                "The least thickness is {value}; give metres, 0 or more.",
+                "The least thickness is {value}; give metres, from 0 to {most:.0e}.",
                 value=minimum,
+                most=LARGEST,
             )
         )
     stack = _Stack([_Layer(surfaces[name]) for name in sequence], minimum)

@@ -198,7 +198,7 @@ def _client(scheduler: str) -> tuple[Any, Any]:
     named = {"address": scheduler} if "://" in scheduler else {"scheduler_file": scheduler}
     try:
         return distributed.Client(**named, timeout=PATIENCE, set_as_default=False), distributed
-    except (OSError, TimeoutError, ValueError):
+    except (AssertionError, KeyError, OSError, TimeoutError, ValueError):  # a file without an address as well
         raise SchedulerError(
             message(
                 "streaming.scheduler-silent",

@@ -19,6 +19,7 @@ from threadpoolctl import threadpool_limits
 
 from geofit.data.columns import LARGEST
 from geofit.data.errors import FitError, PointsError
+from geofit.data.files import folder_for
 from geofit.data.given import arguments_checked
 from geofit.data.long_arrays import LongArray, Rows, blocks, covariance, everywhere, without
 from geofit.data.messages import message
@@ -98,7 +99,7 @@ def fit_cloud(
     name : str
         Name of the surface.
     folder : Path, optional
-        Folder for temporary files, 24 bytes a point; the system's own if not given.
+        Folder for temporary files, 24 bytes a point, created if missing; the system's own if not given.
 
     Returns
     -------
@@ -122,8 +123,8 @@ def fit_cloud(
     """
     settings = settings or FitSettings()
     rows: Rows = xyz if isinstance(xyz, LongArray) else np.asarray(xyz, np.float64)
-    corners = study_area_of(boundary)
-    with threadpool_limits(limits=1), tempfile.TemporaryDirectory(dir=folder, prefix="cloud-") as temporary:
+    corners, scratch = study_area_of(boundary), None if folder is None else folder_for(folder)
+    with threadpool_limits(limits=1), tempfile.TemporaryDirectory(dir=scratch, prefix="cloud-") as temporary:
         return _fit_cloud(rows, settings, corners, progress, name, Path(temporary))
 
 

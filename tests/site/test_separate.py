@@ -159,3 +159,5 @@ def test_what_cannot_be_repaired_is_refused(crossing):
         separate_horizons(imported, ["top", "base"])
     with refused(SettingsError, "site.least-thickness-negative", value=-1):
         separate_horizons(crossing, ["top", "base"], minimum=-1)
+    with refused(SettingsError, "site.least-thickness-negative", value=1e300):
+        separate_horizons(crossing, ["top", "base"], minimum=1e300)
