@@ -207,7 +207,7 @@ def arguments_checked(what: T) -> T:
             given = _bound(function, known, args, kwargs)
             _compare(known, given, every)
             _compare_shapes(what.__doc__, given)
-            _compare_values(given)
+            _compare_values(known, given)
             raise
         if isinstance(what, type):
             given = _bound(function, known, args, kwargs)
@@ -269,9 +269,14 @@ def _is_side(letters: dict[str, int], stated: str, length: int) -> bool:
     return length == (int(stated) if stated.isdigit() else letters.setdefault(stated, length))
 
 
-def _compare_values(given: Mapping[str, Any]) -> None:
-    """Refuse values that no function can work with: the last resort once one of them ended in an error."""
+def _compare_values(known: Signature, given: Mapping[str, Any]) -> None:
+    """Refuse values that no function can work with: the last resort after an error that is not one of geofit's.
+
+    An infinite number that is the argument's default is not to blame.
+    """
     for name, value in given.items():
+        if isinstance(value, float) and value == known.parameters[name].default:
+            continue
         _refuse_ragged(name, value)
         if isinstance(value, str | os.PathLike):
             if not os.fspath(value) or "\0" in str(value):
@@ -294,7 +299,7 @@ def _refuse_ragged(name: str, value: Any) -> None:
 
 def _refuse_value(name: str, fault: Message) -> NoReturn:
     text = message("data.argument-unusable", "{argument} cannot be used: {fault}", argument=name, fault=fault)
-    raise ArgumentError(text) from None
+    raise ArgumentError(text)
 
 
 def _of_numbers(kind: _Kind) -> bool:
@@ -318,7 +323,7 @@ def keywords_known(cls: T) -> T:
             raise
         except Exception:
             _compare(known, given, {one.name: tuple(_kinds(one.annotation, made)) for one in known.parameters.values()})
-            _compare_values(given)
+            _compare_values(known, given)
             raise
 
     cls.__init__ = call  # type: ignore[method-assign]

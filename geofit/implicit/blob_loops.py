@@ -73,7 +73,7 @@ def density(
     for p in range(xyz.shape[0]):
         cell = _cell(xyz[p, 0], xyz[p, 1], xyz[p, 2], corner, side, counts)
         if cell < 0:
-            # Of a place that is none there is no value.
+            # A place with a coordinate that is not a number has no value.
             total[p] = math.nan if math.isnan(xyz[p].sum()) else 0.0
             continue
         for i in range(start[cell], start[cell + 1]):

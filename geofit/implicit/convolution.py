@@ -183,7 +183,7 @@ class Convolution:
     def value(self, xyz: Floats) -> Floats:
         """Return phi at (n, 3) points."""
         xyz = points_of(xyz)
-        # Of a place that is none there is no value.
+        # A place with a coordinate that is not a number has no value.
         total = np.where(np.isnan(xyz.sum(axis=1)), np.nan, 0.0)
         for point, segment in self._pairs(xyz):
             value = self._integrals(xyz[point], segment)[0]

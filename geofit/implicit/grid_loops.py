@@ -32,7 +32,7 @@ def spline_value(places: Floats, c: Floats) -> Floats:
     cell = np.empty(3, np.int64)
     for p in range(n):
         for a in range(3):
-            # What is not a number has a cell, too: its value is not one either.
+            # A coordinate that is not a number must not index beyond the array; its weights are nan.
             cell[a] = max(min(math.floor(places[p, a]), c.shape[a] - 4), 0)
             _weights(places[p, a] - cell[a], w[a])
         total = 0.0
@@ -55,7 +55,7 @@ def spline_jet(places: Floats, c: Floats) -> tuple[Floats, Floats, Floats]:
     cell = np.empty(3, np.int64)
     for p in range(n):
         for a in range(3):
-            # What is not a number has a cell, too: its value is not one either.
+            # A coordinate that is not a number must not index beyond the array; its weights are nan.
             cell[a] = max(min(math.floor(places[p, a]), c.shape[a] - 4), 0)
             u = places[p, a] - cell[a]
             v = 1 - u

@@ -105,7 +105,7 @@ def _loops() -> tuple[Any, Any, Any]:
             j = int(np.floor((xyz[p, 1] - origin[1]) / width))
             k = int(np.floor((xyz[p, 2] - origin[2]) / width))
             if not (0 <= i < shape[0] and 0 <= j < shape[1] and 0 <= k < shape[2]):
-                # Of a place that is none there is no sum.
+                # A place with a coordinate that is not a number has no value.
                 value[p] += np.nan if np.isnan(xyz[p].sum()) else 0.0
                 continue
             cell = (i * shape[1] + j) * shape[2] + k

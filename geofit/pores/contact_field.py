@@ -165,6 +165,6 @@ def _voxel_field(
 def _cell(place: float, count: int) -> tuple[int, float]:
     """Return the voxel whose middle lies below a place given in voxels, and the share of the way to the next."""
     t = min(max(place - 0.5, 0.0), count - 1.0)
-    # What is not a number has a voxel, too: its value is not one either.
+    # A coordinate that is not a number must not index beyond the array; its weights are nan.
     first = max(min(int(t), max(count - 2, 0)), 0)
     return first, t - first
