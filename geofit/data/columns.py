@@ -59,7 +59,7 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
     return xyz
 
 
-def finite_places(given: ArrayLike) -> NDArray[np.float64]:
+def finite_places(given: ArrayLike, name: str = "xyz") -> NDArray[np.float64]:
     """Return :func:`places` that are neither nan nor infinite.
 
     Raises
@@ -67,7 +67,7 @@ def finite_places(given: ArrayLike) -> NDArray[np.float64]:
     PointsError
         If one is; the text names the first.
     """
-    xyz = places("xyz", given)
+    xyz = places(name, given)
     if not np.isfinite(xyz).all():
         bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
         raise PointsError(
@@ -85,7 +85,7 @@ def finite_places(given: ArrayLike) -> NDArray[np.float64]:
     return xyz
 
 
-def measurable_places(given: ArrayLike) -> NDArray[np.float64]:
+def measurable_places(given: ArrayLike, name: str = "xyz") -> NDArray[np.float64]:
     """Return :func:`finite_places` of which each coordinate is at most :data:`LARGEST`; one place (3,) is (1, 3).
 
     Raises
@@ -96,7 +96,7 @@ def measurable_places(given: ArrayLike) -> NDArray[np.float64]:
     rows: Any = given
     with suppress(ValueError):  # ragged, which is reported below
         rows = [given] if np.ndim(given) == 1 and np.size(given) else given
-    xyz = finite_places(rows)
+    xyz = finite_places(rows, name)
     refuse_far(xyz)
     return xyz
 

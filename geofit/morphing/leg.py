@@ -227,4 +227,4 @@ def leg_between(
 def _seed_places(seeds: bool | Sequence[ArrayLike], unreached: Sequence[LonePart], origin: Floats) -> Floats:
     if isinstance(seeds, bool):
         return np.array([part.deepest for part in unreached if seeds]).reshape(-1, 3) - origin
-    return measurable_places(cast(ArrayLike, seeds)) - origin
+    return measurable_places(cast(ArrayLike, seeds), "seeds") - origin

@@ -7,7 +7,7 @@ import pytest
 
 import geofit
 import geofit.implicit as implicit
-from geofit.data.errors import SettingsError
+from geofit.data.errors import PointsError, SettingsError
 from geofit.morphing.errors import MorphError
 
 BALL = implicit.Sphere([0, 0, 0], 0.5)
@@ -135,6 +135,11 @@ def test_a_ball_that_is_not_touched_is_named_before_and_reached_from_a_seed() ->
 
 
 BALL_1 = implicit.Sphere([0, 0, 0], 1)
+
+
+def test_places_of_seeds_are_named_where_they_are_none() -> None:
+    with pytest.raises(PointsError, match=r"seeds has shape \(1, 2\)"):
+        geofit.morph(BALL_1, BALL_1, cells=16, seeds=[[3.1, 0.1]])
 
 
 def test_bodies_that_do_not_touch_need_seeds_or_a_blend() -> None:
