@@ -150,11 +150,11 @@ def _away(prediction: PredictionResult | None, epsilon: float) -> Lamp:
     title = message("data.verdict-away", "Away from the data")
     known = () if prediction is None else tuple(one for one in prediction.left_out if np.isfinite(one.rms))
     if not known:
-        text = message("data.verdict-not-examined", "not examined away from the data")
-        if prediction is not None:
-            text = message("data.verdict-cannot-examine", "the error away from the data cannot be estimated")
-        # Points were left out, but none could be predicted from the others.
-        return Lamp(title, "warning" if prediction is not None and prediction.left_out else "none", text)
+        if prediction is None:
+            return Lamp(title, "none", message("data.verdict-not-examined", "not examined away from the data"))
+        # No point could be predicted from the others, or leaving them out failed: that is not a pass.
+        text = message("data.verdict-cannot-examine", "the error away from the data cannot be estimated")
+        return Lamp(title, "warning", text)
     farthest = max(known, key=lambda one: one.rms)
     level, error = _error(farthest.rms, farthest.scheme, epsilon)
     worst = _least_inside(known)

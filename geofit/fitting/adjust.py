@@ -82,7 +82,7 @@ def _left_as_they_are(model: Model) -> Message | None:
         if crowded(model.net.base, given.parametrization.plane[given.kept] / model.net.unit) is not None:
             return message(
                 "fitting.sigma-of-wide-area",
-                "sigma stays above epsilon: in a study area that is far wider than the points they are not followed",
+                "sigma stays above epsilon: the study area is far wider than the points, so they are not followed",
             )
         return message(
             "fitting.sigma-of-contradiction",

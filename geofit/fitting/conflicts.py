@@ -94,8 +94,8 @@ def places_lost(lost: int, total: int, distance: float) -> tuple[Message, ...]:
         return ()
     note = message(
         "fitting.places-lost",
-        "{count} of {total} points take no part in the fit: each lies within {distance:g} m of another. Where these "
-        "are places of their own, give a smaller coincidence_distance, or the coordinates in metres.",
+        "{count} of {total} points take no part in the fit: each lies within {distance:g} m of another. If these are "
+        "separate locations, give a smaller coincidence_distance, or the coordinates in metres.",
         count=lost,
         total=total,
         distance=distance,

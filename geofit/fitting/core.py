@@ -21,6 +21,7 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
 from geofit.fitting.approximate import fixed_by_core
 from geofit.fitting.assemble import carried, multiply_knots
+from geofit.fitting.core_relief import CoreRelief, relief_of_core
 from geofit.fitting.field import FieldChoice, Smoothed
 from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes, some_breaks
 from geofit.fitting.net import Net, Periphery, cap_for, in_patches, smoothed
@@ -70,7 +71,8 @@ LITTLE = 0.05
 class _Core:
     """What passes through points: those marked ``inside``, in a rectangle in units, with the field chosen for all.
 
-    ``coarse`` is the space on which the field was chosen; ``lines`` are the sections. ``between`` marks the points
+    ``coarse`` is the space on which the field was chosen, ``relief`` the field of the core's own points where that one
+    cannot follow them; ``lines`` are the sections. ``between`` marks the points
     between the section curves of a fold.
     """
 
@@ -83,6 +85,12 @@ class _Core:
     lines: Lines
     parametric: bool
     settings: FitSettings
+    relief: CoreRelief | None = None
+
+    def field_at(self, space: TensorSpace, coefficients: Floats, plane: Floats) -> Floats:
+        """Return the field at (m, 2) places of the core: that on a space, or the core's own in its place."""
+        found = np.asarray(space.matrix(plane) @ coefficients)
+        return found if self.relief is None else self.relief.instead(plane, found)
 
 
 @dataclass(frozen=True)
@@ -141,17 +149,18 @@ def fit_with_core(
     degree, most = degree_for(len(data.plane)), cap_for(settings, len(data.plane), A_POINT)
     stage("field", 0.25)
     field, coarse = choose_field(data, settings, most, sketched) if chosen is None else chosen
+    relief = relief_of_core(data, core, inside, field, settings, most)
+    noise = field.noise if relief is None else relief.noise
     automatic = settings.core == "auto" and settings.smoothing == "auto" and not parametrization.parametric
     little = min(settings.interior_tolerance, LITTLE * field.spread)
     drawn = float(np.mean(parametrization.section[kept][inside] != "")) >= DRAWN
     resolved = (RESOLVED_DRAWN if drawn else RESOLVED) * field.spread
-    if automatic and field.noise > max(resolved, little):
+    if automatic and noise > max(resolved, little):
         raise ExactnessError(
             message(
                 "fitting.points-support-to-noise",
-                "its points support each other to about {noise:.3g} m only, where their height varies "
-                "by about {spread:.3g} m",
-                noise=field.noise,
+                "its points agree only to about {noise:.3g} m, while their height varies by about {spread:.3g} m",
+                noise=noise,
                 spread=field.spread,
             )
         )
@@ -170,7 +179,7 @@ def fit_with_core(
     first = limits = _Limits(most, min(LONGEST, max(longest_span(coarse), LONGEST_IN_GROUPS)))
     between = ~parametrization.parametrized[kept]
     while True:
-        given = _Core(data, core, inside, between, field, coarse, lines, parametrization.parametric, settings)
+        given = _Core(data, core, inside, between, field, coarse, lines, parametrization.parametric, settings, relief)
         try:
             through = _through_points(given, limits, linear)
             break
@@ -250,7 +259,7 @@ def _through_points(core: _Core, limits: _Limits, linear: bool) -> _Through:
             some = [bspline.clamped_knots(some_breaks(along, span), degree) for along in breaks]
             base = TensorSpace(some[0], some[1], degree)
         regional = smoothed(data, base, core.field)
-        misfit = data.value[chosen] - base.matrix(plane) @ regional.coefficients
+        misfit = data.value[chosen] - core.field_at(base, regional.coefficients, plane)
         refined = refine_knots(*breaks, plane, pairs, misfit, degree, counted, rounds, data.unit)
         tried.append((refined.strain, base, regional, refined.breaks))
         if refined.strain <= 1.0:
@@ -258,6 +267,8 @@ def _through_points(core: _Core, limits: _Limits, linear: bool) -> _Through:
     _, base, regional, breaks = min(tried, key=itemgetter(0))
     knots = [bspline.clamped_knots(along, degree) for along in breaks]
     fine, start = carried(base, regional.coefficients, knots[0], knots[1])
+    if core.relief is not None:
+        start = core.relief.blended(fine, start)
     if linear:
         low, high = core.rectangle[:2]
         within = lines.u[(lines.u > low) & (lines.u < high)]
@@ -289,6 +300,9 @@ def _breaks(
     required_v = np.array([area[2], core[2], core[3], area[3]])
     sizes_u = _beside_lines(lines) if lines.straight else pair_sizes(plane, pairs, 0, ACROSS)
     sizes_v = pair_sizes(plane, pairs, 1, limits.closer * (ALONG if lines.straight else ACROSS))
+    if given.relief is not None:
+        following_u, following_v = given.relief.spans()
+        sizes_u, sizes_v = np.concatenate([sizes_u, following_u]), np.concatenate([sizes_v, following_v])
     stretch = 1.0
     while True:
         scale = np.array([1.0, 1.0, stretch])
@@ -317,7 +331,7 @@ def _torn(core: _Core) -> NDArray[np.bool_]:
     if not loose.any():
         return torn
     plane = data.plane[chosen]
-    misfit = data.value[chosen] - coarse.matrix(plane) @ smoothed(data, coarse, core.field).coefficients
+    misfit = data.value[chosen] - core.field_at(coarse, smoothed(data, coarse, core.field).coefficients, plane)
     misfit = misfit.reshape(len(chosen), -1)
     size = np.linalg.norm(misfit, axis=1)
     first, second = neighbour_pairs(plane).T

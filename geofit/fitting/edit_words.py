@@ -26,8 +26,8 @@ def move_note(patch: str, i: int, j: int, dz: float, aside: Sequence[float]) -> 
     x, y, z = aside
     return message(
         "fitting.control-point-moved-aside-note",
-        "manual edit: control point ({i}, {j}) of patch '{patch}' moved by {dz:+.3g} m, and aside by "
-        "({x:+.3g}, {y:+.3g}, {z:+.3g}) m",
+        "manual edit: control point ({i}, {j}) of patch '{patch}' moved by {dz:+.3g} m, and sideways by ({x:+.3g}, "
+        "{y:+.3g}, {z:+.3g}) m",
         i=i,
         j=j,
         patch=patch,
@@ -83,6 +83,7 @@ def moved_aside() -> FitError:
     return FitError(
         message(
             "fitting.control-points-aside",
-            "Control points that were moved aside act here. Undo their moves, or move the control point itself.",
+            "Control points that were moved sideways affect the surface here. Undo their moves, or move the control "
+            "point itself.",
         )
     )

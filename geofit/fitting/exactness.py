@@ -32,7 +32,7 @@ def exact_or_not(surface: HorizonFit) -> HorizonFit:
     split = model.problem.split
     reason = message(
         "fitting.points-called-approximated",
-        "{reason}; points that it does not meet, by up to {worst:.3g} m: {count}, which count as approximated",
+        "{reason}; points that it misses, by up to {worst:.3g} m, and that count as approximated: {count}",
         reason=split.reason,
         count=int(missed.sum()),
         worst=float(np.abs(accuracy.residuals[missed]).max()),

@@ -347,8 +347,9 @@ class Periphery:
             return ()
         note = message(
             "fitting.points-less-accurate",
-            "{count} points are known less accurately than the interior tolerance of {tolerance:g} m, the least "
-            "to {accuracy:.3g} m; the surface follows them as far as that, and they count in sigma like all others",
+            "{count} points are known less accurately than the interior tolerance of {tolerance:g} m, at worst to "
+            "{accuracy:.3g} m; the surface follows them only to their accuracy, and they count in sigma like all "
+            "others",
             count=len(coarse),
             tolerance=self.settings.interior_tolerance,
             accuracy=float(coarse.max()),
@@ -394,16 +395,16 @@ class Periphery:
         if released:
             reason = message(
                 "fitting.neighbours-contradict",
-                "neighbours nearer to each other than the knots contradict each other there (strict meets them where "
-                "knots allow, and the surface swings between them)",
+                "neighbours closer together than the knots contradict each other there (strict meets them where knots "
+                "allow, and the surface swings between them)",
             )
         close = crowded(base, self.data.plane) if self.field.contradictory or released else None
         if close is not None:
             reason = message(
                 "fitting.area-far-wider",
-                "nine tenths of the points lie within {extent:.0f} m, of a study area so wide that its control points "
-                "stand {span:.0f} m apart; draw the area around the points, or check the points farthest from the "
-                "others",
+                "nine tenths of the points lie within {extent:.0f} m, but the study area is so wide that its control "
+                "points are {span:.0f} m apart; draw the area around the points, or check the points farthest from "
+                "the others",
                 extent=close[0] * self.data.unit,
                 span=close[1] * self.data.unit,
             )

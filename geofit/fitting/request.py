@@ -74,8 +74,8 @@ def require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
     if off > max(np.hypot(*(high - low)), np.hypot(*(np.ptp(x) for x in plan))):
         text = message(
             "fitting.points-off-study-area",
-            "All points lie off the study area, the nearest by {off:.6g} m. Check the coordinates of both, and the "
-            "order of easting and northing.",
+            "All points lie outside the study area; the nearest is {off:.6g} m from it. Check the coordinates of "
+            "both, and the order of easting and northing.",
             off=float(off),
         )
         raise PointsError(text)

@@ -177,8 +177,8 @@ def regularized_correction(matrix: csr_array, misfit: Floats, free: NDArray[np.b
 def _unmet(what: Message) -> Message:
     return message(
         "fitting.core-not-interpolable",
-        "The core cannot be interpolated: {what}. Points lie nearer to each other than the allowed control points. "
-        "Raise max_control_points or coincidence_distance, or approximate (core='none').",
+        "The core cannot be interpolated: {what}. Its points are closer together than the allowed control points can "
+        "follow. Raise max_control_points or coincidence_distance, or approximate (core='none').",
         what=what,
     )
 

@@ -176,7 +176,7 @@ def test_a_height_field_whose_control_point_moved_aside_is_not_pulled_to_points_
     control = movable_points(surface, 1)[0]
     after = adjust(surface, *control, 0.0, (5.0, 0.0, 0.0))
     near = int(np.flatnonzero(acted_on(after, *control)[0])[0])
-    with pytest.raises(FitError, match="moved aside"):
+    with pytest.raises(FitError, match="moved sideways"):
         after.move_to(near)
     for wrong, words in (((1.0, 2.0), "has 2 values"), ((float("nan"), 0.0, 0.0), "is nan"), ("abc", "is 'a'")):
         with pytest.raises(FitError, match=words):

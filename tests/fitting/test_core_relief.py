@@ -1,0 +1,93 @@
+"""A core's own field: where the relief of a core is sharper than the sparse points around it can tell."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.interpolate import RBFInterpolator
+from truth import paper_arrangement, rms
+
+import geofit
+from geofit.fitting import core as fitting_core
+from geofit.fitting.core_relief import CoreRelief, relief_of_core
+from geofit.splines import bspline
+from geofit.splines.tensor import TensorSpace
+
+ORIGIN = np.array([500_000.0, 3_100_000.0])
+
+
+def height(plan):
+    """Return a gentle slope with a channel, 60 m wide and 8 m deep, where the core is."""
+    x, y = (plan - ORIGIN).T
+    aside = (x - 900 - 40 * np.sin(y / 70)) / 30
+    return 1400 + 0.03 * x + 6 * np.sin(y / 500) - 8 * np.exp(-(aside**2)) * np.exp(-(((y - 1000) / 250) ** 4))
+
+
+def channel(seed, noise=0.02):
+    """Return the points of 9 sections across the channel and 50 holes around, and 4,000 places between the sections."""
+    rng = np.random.default_rng(seed)
+    across = np.stack(np.meshgrid(np.arange(800, 1001, 12.0), np.arange(840, 1161, 40.0)), -1).reshape(-1, 2)
+    around = rng.uniform(0, 2000, (50, 2))
+    plan = ORIGIN + np.concatenate([across + rng.uniform(-2, 2, across.shape), around])
+    z = height(plan) + rng.normal(0, noise, len(plan))
+    return np.column_stack([plan, z]), ORIGIN + rng.uniform((805, 845), (995, 1155), (4000, 2))
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_a_core_sharper_than_its_surroundings_is_predicted_between_its_sections(seed, monkeypatch):
+    xyz, places = channel(seed)
+    surface = geofit.fit_horizon(geofit.PointSet(xyz), geofit.FitSettings())
+    assert surface.core.sum() > 100
+    assert np.abs(surface.distance(xyz[surface.core])).max() < 1e-6
+    local = xyz - xyz.mean(axis=0)
+    plate = RBFInterpolator(local[:, :2], local[:, 2], kernel="thin_plate_spline")
+    exact = rms(plate(places - xyz[:, :2].mean(axis=0)) + xyz[:, 2].mean() - height(places))
+    own = rms(surface.elevation(*places.T) - height(places))
+    monkeypatch.setattr(fitting_core, "relief_of_core", lambda *_: None)
+    one = geofit.fit_horizon(geofit.PointSet(xyz), geofit.FitSettings())
+    shared = rms(one.elevation(*places.T) - height(places))
+    assert own < 0.8 * exact
+    assert own < 0.6 * shared
+
+
+def test_one_field_serves_a_core_as_gentle_as_its_surroundings(monkeypatch):
+    truth, found = paper_arrangement(0), []
+    monkeypatch.setattr(fitting_core, "relief_of_core", lambda *given: found.append(relief_of_core(*given)))
+    geofit.fit_horizon(truth.points, geofit.FitSettings(), truth.boundary)
+    assert found
+    assert found == [None] * len(found)
+
+
+def test_it_holds_in_the_core_and_ends_with_its_reach():
+    knots = bspline.clamped_knots(np.linspace(0.0, 20.0, 11), 3)
+    space = TensorSpace(knots, knots, 3)
+    rng = np.random.default_rng(1)
+    field = CoreRelief(space, rng.normal(size=space.size), 0.5, (2.0, 8.0, 2.0, 10.0), (1.0, 9.0, 1.0, 10.0), 0.1)
+    plane = rng.uniform(0, 10, (2000, 2))
+    plane[:50, 1] = 10.0
+    heights = rng.normal(size=len(plane))
+    found = field.instead(plane, heights)
+    within = ((plane >= 2) & (plane <= (8, 10))).all(axis=1)
+    # Along v it ends with the core itself above, as at the edge of the study area.
+    beyond = (plane <= 1).any(axis=1) | (plane[:, 0] >= 9)
+    within |= (plane[:, 0] >= 2) & (plane[:, 0] <= 8) & (plane[:, 1] == 10)
+    assert within.any()
+    assert beyond.any()
+    np.testing.assert_allclose(found[within], space.matrix(plane[within] / 0.5) @ field.coefficients)
+    np.testing.assert_array_equal(found[beyond], heights[beyond])
+    own = space.matrix(plane / 0.5) @ field.coefficients
+    low, high = np.minimum(own, heights), np.maximum(own, heights)
+    assert ((found >= low - 1e-12) & (found <= high + 1e-12)).all()
+
+
+def test_a_surface_that_takes_it_follows_it():
+    own_knots = bspline.clamped_knots(np.linspace(0.0, 12.0, 7), 3)
+    own = TensorSpace(own_knots, own_knots, 3)
+    rng = np.random.default_rng(2)
+    field = CoreRelief(own, rng.normal(size=own.size), 0.5, (2.0, 4.0, 2.0, 4.0), (0.0, 6.0, 0.0, 6.0), 0.1)
+    knots = bspline.clamped_knots(np.linspace(-2.0, 8.0, 61), 3)
+    space = TensorSpace(knots, knots, 3)
+    coefficients = rng.normal(size=space.size) * 0
+    surface = field.blended(space, coefficients)
+    plane = rng.uniform(-2, 8, (2000, 2))
+    np.testing.assert_allclose(space.matrix(plane) @ surface, field.instead(plane, np.zeros(len(plane))), atol=2e-3)
