@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from functools import lru_cache
 
 import numpy as np
@@ -22,7 +23,10 @@ def surface_area(pore: NDArray[np.bool_], edges: tuple[float, float, float] = (1
 
     Twice the mean over all directions of the projected area, each direction weighted by the part of the sphere that is
     nearer to it than to the others. For spheres of 10 voxels and more the error is below 2 %, where counting voxel
-    faces gives 50 % too much.
+    faces gives 50 % too much. With 13 directions the area of a plane depends on where it faces: in cubic voxels from
+    7.4 % too little along the axes to 2.3 % too much, in voxels twice as long as wide from -12.6 to +9.4 %.
+
+    An axis with a single slice shows no slope of the walls: they are taken to be perpendicular to the slice.
 
     Parameters
     ----------
@@ -38,14 +42,30 @@ def surface_area(pore: NDArray[np.bool_], edges: tuple[float, float, float] = (1
         )
     total = 0.0
     for direction, weight in zip(_DIRECTIONS, _weights(edges), strict=True):
-        here, there = [], []
-        for step, n in zip(direction, pore.shape, strict=True):
-            here.append(slice(max(-step, 0), n - max(step, 0)))
-            there.append(slice(max(step, 0), n - max(-step, 0)))
-        crossings = int(np.count_nonzero(pore[tuple(here)] != pore[tuple(there)]))
+        crossings = _crossings(pore, direction)
         length = float(np.linalg.norm(np.array(direction) * edges))
         total += weight * crossings * float(np.prod(edges)) / length
     return 2.0 * total
+
+
+def _crossings(pore: NDArray[np.bool_], direction: tuple[int, ...]) -> float:
+    """Return how often lines in a direction, one through each voxel, cross the wall.
+
+    Lines between the middles of voxels end half a voxel before the faces. What they miss there is what they find in the
+    other half of the same layer: a pair of voxels at a face counts half more.
+    """
+    here, there, ends = [], [], []
+    for step, n in zip(direction, pore.shape, strict=True):
+        by = step if n > 1 else 0  # from a single slice no line leads to a next one
+        here.append(slice(max(-by, 0), n - max(by, 0)))
+        there.append(slice(max(by, 0), n - max(-by, 0)))
+        ends.append([(slice(None), 1.0), (slice(1), 0.5), (slice(-1, None), 0.5)] if by else [(slice(None), 1.0)])
+    changed = pore[tuple(here)] != pore[tuple(there)]
+    total = 0.0
+    for parts in itertools.product(*ends):
+        where, shares = zip(*parts, strict=True)
+        total += float(np.prod(shares)) * int(np.count_nonzero(changed[where]))
+    return total
 
 
 @lru_cache(maxsize=8)

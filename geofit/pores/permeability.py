@@ -26,6 +26,8 @@ _RESIDUAL = 1e-10
 _THROAT_SHARE = 0.66
 #: Least cosine between a face of the sample and the flow through it that is believed.
 _SLANT = 0.3
+#: Share of the flow that single pores from face to face may carry without a warning.
+_MOST = 0.5
 
 
 @dataclass(frozen=True)
@@ -37,7 +39,8 @@ class Permeability:
     square_metres : tuple of three float
         0 along an axis whose two faces are not connected.
     messages : tuple of Message
-        One for each axis without flow, with the reason.
+        One for each axis without flow, with the reason; a warning for each axis along which most of the flow passes
+        through pores that touch both faces.
     """
 
     square_metres: tuple[float, float, float]
@@ -55,7 +58,9 @@ def network_permeability(network: PoreNetwork) -> Permeability:
     """Return the permeability of a network along each axis.
 
     Each conduit is a series of half a pore, a throat and half a pore. A throat conducts like a straight duct with its
-    section; half a pore like a duct of the same shape, widened to the pore's radius. Lateral faces are closed.
+    section; half a pore like a duct of the same shape, widened to the pore's radius. Lateral faces are closed. A pore
+    that touches both faces is thus a straight duct between them: right for a tube, but not where the pores of a wide
+    pore space were merged into one. :func:`geofit.pores.laplace_permeability` needs no network.
 
     Parameters
     ----------
@@ -76,7 +81,9 @@ def network_permeability(network: PoreNetwork) -> Permeability:
             values.append(0.0)
             messages.append(_no_flow(network, axis))
             continue
-        flow = _flow(network, conduits, inlets, axis)
+        flow, share = _flow(network, conduits, inlets, axis)
+        if share > _MOST:
+            messages.append(_through_single_pores(axis, share))
         values.append(float(flow * lengths[axis] ** 2 / lengths.prod() * network.unit**2))
     return Permeability((values[0], values[1], values[2]), tuple(messages))
 
@@ -89,6 +96,17 @@ def _no_flow(network: PoreNetwork, axis: int) -> Message:
         axis=AXES[axis],
         porosity=network.porosity,
     )
+
+
+def _through_single_pores(axis: int, share: float) -> Message:
+    return message(
+        "pores.flow-through-single-pores",
+        "{share:.0%} of the flow along {axis} passes through pores that touch both faces. The network takes them for "
+        "straight ducts; where they are not, its permeability may be several times too high or too low. Compare it "
+        "with laplace_permeability.",
+        share=share,
+        axis=AXES[axis],
+    ).with_severity("warning")
 
 
 def _conduits(network: PoreNetwork) -> NDArray[np.float64]:
@@ -127,8 +145,10 @@ def _narrow_share(network: PoreNetwork, throats: Throats | FaceThroats, pore: ND
     return np.asarray(share + (1.0 - share) / widening**4)
 
 
-def _flow(network: PoreNetwork, conduits: NDArray[np.float64], inlets: NDArray[np.float64], axis: int) -> float:
-    """Return the flow through the sample under unit pressure difference between the faces of an axis."""
+def _flow(
+    network: PoreNetwork, conduits: NDArray[np.float64], inlets: NDArray[np.float64], axis: int
+) -> tuple[float, float]:
+    """Return the flow under unit pressure difference between the faces of an axis, and the share of single pores."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -153,7 +173,11 @@ def _flow(network: PoreNetwork, conduits: NDArray[np.float64], inlets: NDArray[n
     source: NDArray[np.float64] = np.asarray(np.bincount(k, weights=h * low[ends], minlength=size), float)
     pressure = _pressure(matrix, source)
     leaving = high & active[pore]
-    return float((inlets[leaving] * pressure[number[pore[leaving]]]).sum())
+    flow = float((inlets[leaving] * pressure[number[pore[leaving]]]).sum())
+    # What enters a pore through one face and leaves it through the other meets no throat.
+    into = source - np.bincount(k, weights=h * low[ends] * pressure[k], minlength=size)
+    out = np.bincount(k, weights=h * high[ends] * pressure[k], minlength=size)
+    return flow, float(np.minimum(into, out).sum() / flow) if flow > 0 else 0.0
 
 
 def _pressure(matrix: Any, source: NDArray[np.float64]) -> NDArray[np.float64]:

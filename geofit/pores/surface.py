@@ -25,10 +25,9 @@ from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.implicit.field import Box, Field, points_of
-from geofit.implicit.isosurface import isosurface
-from geofit.implicit.lattice import Lattice
 from geofit.implicit.mesh import TriangleMesh
 from geofit.pores.balls import balls_of_distance, maximal_balls
+from geofit.pores.box_mesh import mesh_in_box
 from geofit.pores.contacts import contact_points
 from geofit.pores.distance import Border, squared_distance
 from geofit.pores.extraction import pore_network
@@ -212,14 +211,13 @@ class PoreSurface(OwnField):
         """The shortest edge of a voxel, metres."""
         return min(self.voxel)
 
-    @cached_property
-    def overview(self) -> TriangleMesh:
-        """Closed triangles at the spacing of the voxels, capped at the faces of the sample."""
-        return self.local_mesh(self.spacing)
+    @property
+    def overview_spacing(self) -> float:
+        """Edge of the overview's cells, metres: that of the voxels. It is capped at the faces of the sample."""
+        return self.spacing
 
-    def _lattice(self, spacing: float) -> Lattice:
-        counts = np.maximum(np.rint(self.bounds[1] / spacing).astype(int), 1)
-        return Lattice(np.zeros(3), spacing, (int(counts[0]) + 1, int(counts[1]) + 1, int(counts[2]) + 1))
+    def _mesh_of_cells(self, spacing: float) -> TriangleMesh:
+        return mesh_in_box(self.field, *self.bounds, spacing)
 
     def write_step(self, path: str | PathLike[str], nurbs: bool = False, **stated: Unpack[StepFields]) -> SolidReadBack:
         """Write the pores as a STEP AP242 solid, of triangles by default: 500 patches do not follow a pore space."""
@@ -421,11 +419,8 @@ def _of_equal_volume(body: ContactField, volume: RockVolume) -> ContactField:
     for first in boxes:
         last = np.minimum(np.add(first, BOX), volume.shape)
         voxels = volume.pore[tuple(slice(a, b) for a, b in zip(first, last, strict=True))]
-        counts = np.rint((last - first) * volume.voxel / volume.unit).astype(int) + 1
-        lattice = Lattice(
-            np.multiply(first, volume.voxel), volume.unit, (int(counts[0]), int(counts[1]), int(counts[2]))
-        )
-        mesh = isosurface(body, lattice, capped=True, slivers=True)
+        low, high = np.multiply(first, volume.voxel), np.multiply(last, volume.voxel)
+        mesh = mesh_in_box(body, low, high, volume.unit, slivers=True)
         missing += np.count_nonzero(voxels) * float(np.prod(volume.voxel)) - mesh.volume
         area += float(mesh.areas.sum())
     return replace(body, shift=body.shift + missing / (area * volume.unit)) if area else body

@@ -316,6 +316,6 @@ def _rows(folder: Path, name: str) -> list[list[str]]:
             return [line.split() for line in data.decode("ascii").splitlines() if line.strip()]
     raise InputError(
         message("io.network-file-missing", "a network needs four files, and this one is missing"),
-        message("io.put-next-to-others", "Put it next to the others."),
+        message("io.put-next-to-others", "Put it in the folder of the others."),
         file=str(folder / name),
     )

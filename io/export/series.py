@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
-from geofit.data.files import replacing
+from geofit.data.files import folder_for, replacing
 from geofit.geometry.mesh import Mesh
 from geofit.io.export.vtk import write_vtp
 
@@ -31,7 +31,7 @@ def write_pvd(frames: Sequence[tuple[float, Mesh]], path: str | PathLike[str]) -
     """
     target = Path(path)
     folder = target.with_suffix("")
-    folder.mkdir(parents=True, exist_ok=True)
+    folder_for(folder)
     lines = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">']
     lines.append("<Collection>")
     files = []

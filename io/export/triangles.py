@@ -7,6 +7,7 @@ quarter of a metre: their coordinates are relative to an origin, written to ``FI
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Mapping
 from os import PathLike
@@ -32,11 +33,12 @@ FLOAT, UINT, VERTICES, INDICES, TRIANGLES = 5126, 5125, 34962, 34963, 4
 
 
 def write_obj(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> None:
-    """Write Wavefront OBJ: an object a horizon, map coordinates to 1e-6 m, z upwards."""
+    """Write Wavefront OBJ: an object a horizon, map coordinates to 1e-6 m, of small bodies finer, z upwards."""
     lines, first = ["# metres, map coordinates, z upwards"], 1
-    for name, mesh in _given(meshes, path).items():
+    digits = max(7 - _magnitude(_given(meshes, path)), 6)
+    for name, mesh in meshes.items():
         lines.append(f"o {_word(name)}")
-        lines += [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in mesh.xyz.tolist()]
+        lines += [f"v {x:.{digits}f} {y:.{digits}f} {z:.{digits}f}" for x, y, z in mesh.xyz.tolist()]
         lines += [f"f {a} {b} {c}" for a, b, c in (mesh.triangles + first).tolist()]
         first += len(mesh.points)
     with replacing(path) as part:
@@ -166,17 +168,31 @@ def write_glb(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> Floats:
 
 
 def common_origin(meshes: Mapping[str, Mesh]) -> Floats:
-    """Return the south-western bottom of all meshes, rounded down to 100 m: the origin of single precision."""
+    """Return the origin of single precision: the south-western bottom of all meshes, rounded down.
+
+    It is rounded to 100 m, or to the next power of ten above the size of what is smaller: coordinates of the pores of a
+    rock, micrometres apart, would be equal at 100 m.
+    """
     low = np.min([mesh.xyz.min(axis=0) for mesh in meshes.values()], axis=0)
-    return np.asarray(np.floor(low / 100) * 100 + 0.0)
+    power = min(_magnitude(meshes), 2)
+    step = 10.0**power
+    return np.asarray(np.round(np.floor(low / step) * step, max(-power, 0)) + 0.0)
+
+
+def _magnitude(meshes: Mapping[str, Mesh]) -> int:
+    """Return the exponent of the least power of ten that is not below the longest side of all meshes in metres."""
+    xyz = np.concatenate([mesh.xyz for mesh in meshes.values()])
+    longest = float(np.ptp(xyz, axis=0).max()) if len(xyz) else 0.0
+    # One place has no size.
+    return math.ceil(math.log10(longest)) if longest > 0 else 0
 
 
 def _state_origin(origin: Floats, path: str | PathLike[str], axes: str) -> None:
     target = Path(path)
-    x, y, z = origin.tolist()
+    x, y, z = (np.format_float_positional(c, min_digits=3) for c in origin.tolist())
     text = (
         f"Origin of {target.name}: add it to the file's coordinates to get map coordinates, metres.\n"
-        f"Axes of the file: {axes}.\neasting {x:.3f}\nnorthing {y:.3f}\nelevation {z:.3f}\n"
+        f"Axes of the file: {axes}.\neasting {x}\nnorthing {y}\nelevation {z}\n"
     )
     with replacing(target.with_name(target.name + ".origin.txt")) as part:
         part.write_text(text, encoding="utf-8", newline="\n")

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.files import file_stems, replacing
+from geofit.data.files import file_stems, folder_for, replacing
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh
@@ -106,7 +106,7 @@ def write_vtm(
     """
     target = Path(path)
     folder = target.with_suffix("")
-    folder.mkdir(parents=True, exist_ok=True)
+    folder_for(folder)
     lines = [
         '<?xml version="1.0"?>',
         '<VTKFile type="vtkMultiBlockDataSet" version="1.0" byte_order="LittleEndian">',

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Protocol, runtime_checkable
 
 from geofit.data.errors import InputError, SettingsError
-from geofit.data.files import file_stems
+from geofit.data.files import file_stems, folder_for
 from geofit.data.given import SURFACES, arguments_checked, require_kind
 from geofit.data.messages import Message, message
 from geofit.sampling.contours import contours
@@ -209,7 +209,7 @@ def write_surface(
         tolerance=tolerance, unit=unit, origin=origin, crs=crs, interval=interval, cell=cell, value=value,
         points=points or {}, holes=holes, site=site,
     )  # fmt: skip
-    out.parent.mkdir(parents=True, exist_ok=True)
+    folder_for(out.parent)
     return _write(given, chosen, out, options)
 
 

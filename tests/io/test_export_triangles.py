@@ -16,6 +16,7 @@ from geofit.data.errors import InputError
 from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh
 from geofit.io.export import dxf, landxml, triangles, tsurf, vtk
+from geofit.io.meshes import read_obj, read_stl
 
 
 @pytest.fixture(scope="module")
@@ -84,6 +85,22 @@ def test_glb_has_y_up_names_and_the_origin(meshes, tmp_path):
     assert int.from_bytes(raw[8:12], "little") == len(raw)
     length = int.from_bytes(raw[12:16], "little")
     assert json.loads(raw[20 : 20 + length])["asset"]["extras"]["origin"] == origin.tolist()
+
+
+@pytest.mark.parametrize(("low", "size"), [(-3e-6, 2e-4), (0.0, 5e-5), (7.0, 0.03), (123.0, 40.0)])
+def test_triangles_of_a_rock_sample_keep_their_size(low, size, tmp_path):
+    """Micrometres apart, coordinates relative to 100 m were equal in single precision."""
+    xyz = low + size * np.random.default_rng(0).random((300, 3))
+    faces = np.arange(300).reshape(-1, 3)
+    mesh = Mesh(xyz, faces, np.zeros(100, int), np.zeros((100, 3, 2)), np.zeros(3), ("pores",))
+    triangles.write_obj({"pores": mesh}, tmp_path / "a.obj")
+    origin = triangles.write_stl({"pores": mesh}, tmp_path / "a.stl")
+    assert (origin == triangles.write_glb({"pores": mesh}, tmp_path / "a.glb")).all()
+    for back in (read_stl(tmp_path / "a.stl"), read_obj(tmp_path / "a.obj")):
+        assert len(back.triangles) == 100
+        assert np.abs(np.sort(back.corners, axis=1) - np.sort(xyz[faces], axis=1)).max() < 2e-6 * size
+    words = (tmp_path / "a.stl.origin.txt").read_text("utf-8").split()
+    assert [float(words[words.index(axis) + 1]) for axis in ("easting", "northing", "elevation")] == origin.tolist()
 
 
 def test_vtp_holds_deviation_and_patch(meshes, tmp_path):

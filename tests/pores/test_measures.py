@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from brute import blobs
 from scipy import ndimage
-from shapes import capsules
+from shapes import capsules, turns
 
 from geofit.pores import RockVolume, connectivity, euler_number, surface_area
 
@@ -21,6 +21,41 @@ def test_area_in_long_voxels():
     i, j, k = np.ogrid[-22:23, -22:23, -12:13]
     ball = i**2 + j**2 + (2 * k) ** 2 <= 400
     assert surface_area(ball, (1.0, 1.0, 2.0)) == pytest.approx(4 * np.pi * 400, rel=0.03)
+
+
+@pytest.mark.parametrize("slices", [1, 2, 4, 8, 20, 100])
+def test_area_of_a_tube_through_few_slices(slices):
+    """Slanted lines have fewer pairs of voxels than there are voxels, and missed walls next to the faces."""
+    x = np.arange(-40, 41)
+    disc = x[:, None] ** 2 + x**2 <= 30**2
+    for axis in range(3):
+        tube = np.moveaxis(np.repeat(disc[None], slices, axis=0), 0, axis)
+        assert surface_area(tube) == pytest.approx(2 * np.pi * 30 * slices, rel=0.015)
+
+
+def test_area_per_volume_does_not_depend_on_the_size_of_the_sample():
+    whole = ndimage.gaussian_filter(np.random.default_rng(0).normal(size=(120,) * 3), 2.5, mode="wrap") > 0
+    dense = surface_area(whole) / whole.size
+    for edge in (10, 20, 40):
+        cuts = [
+            whole[i : i + edge, j : j + edge, k : k + edge]
+            for i in range(0, 120, edge)
+            for j in range(0, 120, edge)
+            for k in range(0, 120, edge)
+        ]
+        assert np.mean([surface_area(cut) for cut in cuts]) / edge**3 == pytest.approx(dense, rel=0.01)
+
+
+def test_area_does_not_depend_on_how_the_sample_is_turned():
+    pore = blobs(3, (9, 8, 7))
+    areas = [surface_area(turned) for turned in turns(pore)]
+    assert areas == pytest.approx([areas[0]] * 48, rel=1e-12)
+
+
+def test_area_of_planes_is_as_far_off_as_stated():
+    layers = np.zeros((30, 30, 30), bool)
+    layers[:15] = True
+    assert surface_area(layers) / 900 == pytest.approx(1 - 0.074, abs=0.001)
 
 
 @pytest.mark.parametrize(("body", "euler"), [("ball", 1), ("ring", 0), ("shell", 2), ("two", 2)])

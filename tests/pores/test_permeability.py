@@ -287,3 +287,13 @@ def test_networks_of_many_pores_have_the_flow_of_a_direct_solve(monkeypatch):
     direct = network_permeability(network).square_metres
     monkeypatch.setattr("geofit.pores.permeability.MANY", 10)
     assert network_permeability(network).square_metres == pytest.approx(direct, rel=1e-6)
+
+
+def test_flow_through_pores_from_face_to_face_is_a_warning():
+    """In a coarse image of this pack all pores merge into one, and the network knows nothing of its necks."""
+    one, many = (network_permeability(pore_network(volume_of(pack("bcc", a, 2)))) for a in (20, 40))
+    assert [text.code for text in one.messages] == ["pores.flow-through-single-pores"] * 3
+    assert [text.params["axis"] for text in one.messages] == ["axis 0", "axis 1", "axis 2"]
+    assert [text.params["share"] for text in one.messages] == pytest.approx([1.0] * 3)
+    assert {text.severity for text in one.messages} == {"warning"}
+    assert many.messages == ()

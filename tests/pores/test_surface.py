@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from brute import blobs
+from scipy.spatial import cKDTree
 from shapes import pack
 
 from geofit.implicit.field import Field
@@ -66,6 +67,70 @@ def test_surfaces_of_packs_and_noise_are_closed(source, construction):
     assert mesh.is_manifold
     if construction == "contact":
         assert body.porosity == pytest.approx(network.porosity, rel=0.01)
+
+
+@pytest.fixture(scope="module")
+def two_balls():
+    """Two balls that overlap, in the middle of 30 x 30 x 30 voxels, and the signed distance from their union."""
+    middles, radii = np.array([[12.0, 12, 12], [19, 18, 17]]), np.sqrt([80.0, 50.0])
+
+    def outside(places):
+        return (np.linalg.norm(places[..., None, :] - middles, axis=-1) - radii).min(axis=-1)
+
+    x = np.stack(np.meshgrid(*[np.arange(30) + 0.5] * 3, indexing="ij"), axis=-1)
+    return outside(x) < 0, outside
+
+
+@pytest.mark.parametrize("unit", [1.0, 2e-6])
+def test_distances_from_contacts_are_those_of_the_nearest_wall(two_balls, unit):
+    """Where all voxels around are of one kind the field is constant, and a walk to the wall may get lost there."""
+    pore, outside = two_balls
+    body = pore_surface(RockVolume(pore, pore=True, voxel=unit))
+    places = np.random.default_rng(0).uniform(2, 28, (300, 3))
+    distance = body.distance(places * unit) / unit
+    truth = outside(places)
+    # Within, the union's nearest wall may lie at the edge where the balls meet, farther than that of either.
+    error = np.abs(distance - truth)[truth > 0]
+    assert error.max() < 0.5
+    fine = body.triangulate(unit / 4)
+    most = cKDTree(fine.vertices).query(places * unit)[0] / unit
+    assert (np.abs(distance) < most + 0.25).all()
+    assert (np.abs(distance) > most - 0.5).all()
+
+
+def test_distances_are_those_of_the_wall_not_of_the_samples_faces():
+    x = np.arange(20) + 0.5
+    pore = np.repeat(((x[:, None] - 10) ** 2 + (x - 10) ** 2 < 36)[..., None], 8, axis=2)
+    body = pore_surface(RockVolume(pore, pore=True, voxel=1.0))
+    # Along the axis up to the faces of the sample.
+    places = np.column_stack([np.full(9, 11.0), np.full(9, 10.0), np.linspace(0.1, 7.9, 9)])
+    assert body.distance(places) == pytest.approx(-5.0, abs=0.25)
+
+
+@pytest.mark.parametrize(
+    ("shape", "voxel", "spacing"),
+    [
+        ((100, 100, 3), (1, 1, 1), 2.0),
+        ((60, 60, 60), (1, 1, 1), 1.9),
+        ((60, 60, 5), (1, 1, 1.5), None),
+        ((20, 20, 1), (1, 1, 1.45), None),
+    ],
+)
+def test_meshes_end_at_the_faces_of_the_sample(shape, voxel, spacing):
+    x, y = np.ogrid[: shape[0], : shape[1]]
+    middle = (shape[0] - 1) / 2
+    pore = np.broadcast_to(((x - middle) ** 2 + (y - middle) ** 2 < (0.3 * shape[0]) ** 2)[..., None], shape)
+    volume = RockVolume(pore, pore=True, voxel=tuple(1e-6 * edge for edge in voxel))
+    body = pore_surface(volume)
+    upper = body.bounds[1]
+    truth = volume.porosity * upper.prod()
+    mesh = body.triangulate(spacing and spacing * 1e-6)
+    assert mesh.is_closed
+    assert mesh.vertices[:, 2].min() == 0
+    assert mesh.vertices[:, 2].max() == pytest.approx(upper[2], rel=1e-12)
+    assert mesh.volume == pytest.approx(truth, rel=0.015)
+    assert body.size.volume == pytest.approx(truth, rel=0.01)
+    assert body.porosity == pytest.approx(volume.porosity, rel=0.01)
 
 
 def test_wrong_parameters_are_errors(berea):
