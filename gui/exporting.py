@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from PySide6.QtCore import QObject, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
-from PySide6.QtWidgets import QFileDialog, QWidget
+from PySide6.QtWidgets import QWidget
 
 from geofit.data.errors import GeofitError
 from geofit.data.files import file_stems
@@ -17,12 +17,14 @@ from geofit.data.messages import message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.activity import Activity
 from geofit.gui.preferences import Preferences
+from geofit.gui.save_file import ask_save_file
 from geofit.gui.showing import Showing
 from geofit.gui.workspace import Workspace
 from geofit.io.export.write import FORMATS
 from geofit.project.document import Document
 from geofit.project.export_task import export_surfaces
 from geofit.project.interventions import interventions_of
+from geofit.project.staleness import stale_causes
 from geofit.report.result import HorizonResult
 
 __all__ = ["Delivering"]
@@ -66,8 +68,8 @@ class Delivering(QObject):
         surfaces = self._surfaces()
         if surfaces:
             verdicts = {name: found for name in surfaces if (found := self._showing.verdict(name)) is not None}
-            site = self._document.site
-            dialog = ExportDialog(surfaces, self._window, verdicts, self._folder(), site.title, site.datum)
+            site, stale = self._document.site, [name for name in surfaces if self._document.stale(name)]
+            dialog = ExportDialog(surfaces, self._window, verdicts, self._folder(), site.title, site.datum, stale)
             dialog.exec()
             if dialog.files:
                 self._showing.show_exported(surfaces, dialog.files)
@@ -78,19 +80,16 @@ class Delivering(QObject):
         surfaces = self._surfaces()
         if not surfaces:
             return
-        filters = {f"{name} (*{FORMATS[name].endings[0]})": name for name in FORMATS if name != "step"}
-        path, chosen = QFileDialog.getSaveFileName(
-            self._window,
-            self.tr("Export"),
-            str(self._folder() / file_stems([self._document.state.name])[self._document.state.name]),
-            ";;".join(filters),
-        )
-        if path:
-            to = filters[chosen]
-            target = Path(path)
-            if not target.suffix:
-                target = target.with_suffix(FORMATS[to].endings[0])
-            self.write(to, target, surfaces)
+        kinds = {
+            f"{name} ({' '.join(f'*{ending}' for ending in FORMATS[name].endings)})": name
+            for name in FORMATS
+            if name != "step"
+        }
+        start = self._folder() / file_stems([self._document.state.name])[self._document.state.name]
+        chosen = ask_save_file(self._window, self.tr("Export"), start, ";;".join(kinds))
+        if chosen is not None:
+            target, kind = chosen
+            self.write(kinds[kind], target, surfaces)
 
     def write(self, to: str, target: Path, surfaces: Mapping[str, HorizonFit]) -> None:
         """Write surfaces in a format, with the points and holes that the format can hold."""
@@ -162,6 +161,7 @@ class Delivering(QObject):
             excluded=excluded,
             edits=edits,
             change=change,
+            stale=stale_causes(self._document, name),
         )
 
     def list_report(self, path: object) -> None:
@@ -173,14 +173,11 @@ class Delivering(QObject):
 
     def screenshot(self) -> None:
         """Ask for a file, and write the 3D view at print size."""
-        path, _ = QFileDialog.getSaveFileName(
-            self._window,
-            self.tr("Screenshot"),
-            str(self._folder() / "screenshot.png"),
-            self.tr("Pictures (*.png)"),
+        chosen = ask_save_file(
+            self._window, self.tr("Screenshot"), self._folder() / "screenshot.png", self.tr("Pictures (*.png)")
         )
-        if path:
-            target = Path(path) if Path(path).suffix else Path(path).with_suffix(".png")
+        if chosen is not None:
+            target = chosen[0]
             try:
                 self._panels.view.screenshot(target, PRINT_SCALE)
             except (OSError, GeofitError) as error:

@@ -12,6 +12,7 @@ from typing import Any
 
 from geofit.data.accuracy import Exceedance
 from geofit.data.messages import Message
+from geofit.data.stale import StaleCause
 from geofit.data.title_block import TitleBlock
 from geofit.data.verdict import Lamp
 
@@ -392,7 +393,8 @@ class HorizonReport:
     ``over`` counts points beyond tolerances, by the name of the setting. ``pictures`` names those that
     belong here, by what they show. ``plan`` is None for a folded surface, of which contours would cross.
     ``excluded`` are points that a person left out, ``edits`` manual edits. ``change`` is how the horizon moved since
-    its data changed; None where no earlier state is known. ``dips`` were measured on the horizon.
+    its data changed; None where no earlier state is known. ``dips`` were measured on the horizon. ``stale`` lists what
+    has changed since the fit, empty where the surface is up to date.
     """
 
     horizon: str
@@ -429,6 +431,7 @@ class HorizonReport:
     edits: tuple[Message, ...] = ()
     change: ChangeReport | None = None
     dips: tuple[DipLine, ...] = ()
+    stale: tuple[StaleCause, ...] = ()
 
     @property
     def name(self) -> str:

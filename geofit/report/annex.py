@@ -17,7 +17,7 @@ from geofit.report.document import Block, Chapter, CheckMark, Column, Heading, P
 from geofit.report.group_tables import doubled, group_blocks
 from geofit.report.point_table import point_cells, point_columns
 
-__all__ = ["horizon_annex", "inputs_annex"]
+__all__ = ["horizon_annex", "inputs_annex", "setting_value"]
 
 #: Rows of a list in the document; the JSON and the CSV hold all of them.
 LONGEST = 40
@@ -29,7 +29,7 @@ _FIT = {
     "noise": message("report.noise", "Noise, m"),
     "spacing": message("report.spacing", "Spacing, m"),
     "noise_limit": message("report.noise-limit", "Largest noise that a point may have, m"),
-    "by_hand": message("report.manual-edits", "Changes by hand"),
+    "by_hand": message("report.manual-edits", "Manual edits"),
 }
 
 
@@ -77,6 +77,7 @@ def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
                 for f in report.inputs
             ),
         ),
+        *_fitted_to_others(report, t),
         Heading(t("Rejected rows and warnings")),
         Paragraph(
             t(
@@ -124,6 +125,13 @@ def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
     return blocks
 
 
+def _fitted_to_others(report: AccuracyReport, t: Language) -> list[Block]:
+    """Name the horizons that the listed files are not the data of."""
+    names = ", ".join(h.name for h in report.horizons if any(one.kind == "data" for one in h.stale))
+    text = t("These are the files as they are now. Fitted to earlier data, see their chapters: {names}", names=names)
+    return [Paragraph(text, "warning")] if names else []
+
+
 def _worst(h: HorizonReport, t: Language) -> list[Block]:
     columns = (*point_columns(t), Column(t("Patch")), Column(t("d, m"), "number"))
     rows = tuple((*point_cells(p, t), translate(p.patch, t), digits.metres(p.residual)) for p in h.worst)
@@ -167,7 +175,7 @@ def _label(key: str, t: Language) -> str:
     return translate(SETTINGS[key].with_unit() if key in SETTINGS else _FIT[key], t)
 
 
-def _value(key: str, value: Any, t: Language) -> str:
+def setting_value(key: str, value: Any, t: Language) -> str:
     """Return the value of a setting in words; a word may mean something else under another key."""
     choices = SETTINGS[key].choices if key in SETTINGS else {}
     if isinstance(value, (str, bool, type(None))) and value in choices:
@@ -180,9 +188,9 @@ def _value(key: str, value: Any, t: Language) -> str:
 
 
 def _made(h: HorizonReport, t: Language) -> list[Block]:
-    settings = [(_label(key, t), _value(key, value, t)) for key, value in h.settings.items()]
+    settings = [(_label(key, t), setting_value(key, value, t)) for key, value in h.settings.items()]
     figures = [
-        (_label(key, t), _value(key, value, t)) for key, value in h.fit.items() if key in _FIT or key in SETTINGS
+        (_label(key, t), setting_value(key, value, t)) for key, value in h.fit.items() if key in _FIT or key in SETTINGS
     ]
     patches = tuple(
         (

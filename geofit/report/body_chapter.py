@@ -161,7 +161,7 @@ def _percentiles(v: BodyVolumes) -> tuple[str, ...]:
 
 
 def _logged(a: BodyAccuracy, t: Language) -> list[Block]:
-    head = (Column(t("Against the log")), Column(t("Length, m"), "number"), Column(t("Share"), "number"))
+    head = (Column(t("Compared with the log")), Column(t("Length, m"), "number"), Column(t("Share"), "number"))
     logged = a.logged_length
     rows = tuple(
         (word, digits.place(length), digits.share(length / logged) if logged else "–")
@@ -207,7 +207,7 @@ def _left_out(found: BodyFindings, t: Language) -> list[Block]:
         Column(t("Method"), "wide"),
         Column(t("Holes"), "number"),
         Column(t("Wrong side, m"), "number"),
-        Column(t("Of logged"), "number"),
+        Column(t("Share of log"), "number"),
         Column(t("Median error of a contact, m"), "number"),
         Column(t("Contacts missed"), "number"),
     )

@@ -142,8 +142,8 @@ def _loops(found: CaveFindings, t: Language) -> list[Block]:
         figures = (f"{loop.length:.1f}", f"{loop.distance:.2f}", parts, f"{loop.percent:.2f}", f"{loop.expected:.2f}")
         rows.append((" ".join(names), str(len(loop.stations)), *figures, mark))
     text = t(
-        "Misclosures are spread over the shots by least squares. Expected is the standard deviation by the errors of "
-        "tape, compass and clinometer; a loop whose misclosure exceeds three times that is to be checked for a blunder."
+        "Misclosures are spread over the shots by least squares. The expected one is the standard deviation from the "
+        "errors of tape, compass and clinometer; check a loop for a blunder if its misclosure exceeds three times that."
     )
     return [
         *blocks,
@@ -164,7 +164,10 @@ def _volume(found: CaveFindings, t: Language) -> list[Block]:
         ("P10", digits.volume(v.p10)),
         ("P90", digits.volume(v.p90)),
     )
-    text = t("Overlapping passages count once. The true volume is below P10 with 10 %, and below P90 with 90 %.")
+    text = t(
+        "Overlapping passages count once. The true volume is below P10 with a probability of 10 %, and below P90 "
+        "with 90 %."
+    )
     blocks: list[Block] = [Heading(t("Volume")), ReportTable((Column(t("Figure")), Column(t("Value"), "number")), rows)]
     blocks.append(Paragraph(text, "quiet"))
     thin = found.body.thinner_than(found.spacing)

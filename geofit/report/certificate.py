@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geofit.data.accuracy import ReadBack
 from geofit.data.languages import Language, translate
+from geofit.data.stale import stale_warning
 from geofit.report import digits
+from geofit.report.chapter_head import verdict_badge
 from geofit.report.document import (
     Block,
     Cell,
@@ -21,7 +23,6 @@ from geofit.report.document import (
     ReportDocument,
     ReportTable,
     Signatures,
-    VerdictMark,
 )
 from geofit.report.gather import today, versions
 from geofit.report.pdf import write_pdf
@@ -49,6 +50,7 @@ def certificate(
     organisation: str = "",
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0),
     date: str = "",
+    stale: Collection[str] = (),
 ) -> ReportDocument:
     """Lay out the certificate of a file that was read back.
 
@@ -68,9 +70,11 @@ def certificate(
         What is added to the file's coordinates for those of the map, metres; zeros: the file is in map coordinates.
     date : str
         ISO 8601; empty: :func:`geofit.report.gather.today`.
+    stale : collection of str
+        Horizons whose surfaces were fitted to earlier data or settings.
     """
     day, known = date or today(), versions()
-    passed = all(back.passed for back in found.values())
+    passed, old = all(back.passed for back in found.values()), [name for name in found if name in stale]
     first = next(iter(found.values()))
     program = f"geofit {known['geofit']}"
     blocks: list[Block] = [
@@ -94,7 +98,8 @@ def certificate(
             t("PASS: every check of the file passed.") if passed else t("FAIL: see the failed checks below."),
             "plain" if passed else "warning",
         ),
-        _horizons(found, epsilon, t),
+        *([Paragraph(translate(stale_warning(old), t), "warning")] if old else []),
+        _horizons(found, epsilon, t, old),
         *_checks(found, t),
         Paragraph(
             t(
@@ -111,7 +116,7 @@ def certificate(
         Signatures((t("Role"), t("Name"), t("Signature"), t("Date")), ((t("Prepared"), author), (t("Checked"), ""))),
     ]
     title = t("Certificate of a STEP file")
-    badge = VerdictMark(passed, t("PASS") if passed else t("FAIL"))
+    badge = verdict_badge("PASS" if passed else "FAIL", t, stale=bool(old))
     page = Chapter(title, tuple(blocks), badge)
     return ReportDocument(title, file.name, file.name, day, t.html, f"{program} · {day}", (page,))
 
@@ -126,6 +131,7 @@ def write_certificate(
     author: str = "",
     organisation: str = "",
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    stale: Collection[str] = (),
 ) -> None:
     """Write the certificate of a file as PDF; parameters as :func:`certificate`.
 
@@ -134,7 +140,7 @@ def write_certificate(
     MissingDependencyError
         If the certificate is in Chinese and the machine has no font for it.
     """
-    page = certificate(file, found, epsilon, t, author=author, organisation=organisation, offset=offset)
+    page = certificate(file, found, epsilon, t, author=author, organisation=organisation, offset=offset, stale=stale)
     write_pdf(page, {}, path)
 
 
@@ -154,7 +160,9 @@ def _coordinates(offset: tuple[float, float, float], t: Language) -> list[tuple[
     ]
 
 
-def _horizons(found: Mapping[str, ReadBack | SolidReadBack], epsilon: Mapping[str, float], t: Language) -> ReportTable:
+def _horizons(
+    found: Mapping[str, ReadBack | SolidReadBack], epsilon: Mapping[str, float], t: Language, stale: Collection[str]
+) -> ReportTable:
     columns = (
         Column(_kind(found, t), "wide"),
         Column(t("Result")),
@@ -167,7 +175,7 @@ def _horizons(found: Mapping[str, ReadBack | SolidReadBack], epsilon: Mapping[st
     rows: list[tuple[Cell, ...]] = [
         (
             name,
-            VerdictMark(back.passed, t("PASS") if back.passed else t("FAIL")),
+            verdict_badge("PASS" if back.passed else "FAIL", t, stale=name in stale),
             str(back.faces),
             digits.metres(back.sigma),
             digits.given(epsilon[name]),

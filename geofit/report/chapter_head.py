@@ -11,9 +11,11 @@ from geofit.report.document import Paragraph, VerdictMark
 __all__ = ["lamps_paragraph", "verdict_badge"]
 
 
-def verdict_badge(word: str, t: Language) -> VerdictMark:
-    """Return the badge of a verdict: "PASS", "WARNING" or "FAIL"."""
+def verdict_badge(word: str, t: Language, *, stale: bool = False) -> VerdictMark:
+    """Return the badge of a verdict: "PASS", "WARNING" or "FAIL"; a stale surface does not pass without a warning."""
     words = {"PASS": t("PASS"), "WARNING": t("WARNING"), "FAIL": t("FAIL")}
+    if stale:
+        return VerdictMark(False if word == "FAIL" else None, t("{name} (stale)", name=words[word]))
     return VerdictMark({"PASS": True, "FAIL": False}.get(word), words[word])
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from geofit.data.languages import Language, translate
+from geofit.data.languages import Language, sentence, translate
 from geofit.data.messages import Message
+from geofit.data.stale import stale_warning
 from geofit.data.verdict import Lamp
 from geofit.report import digits
 from geofit.report.accuracy_report import AccuracyReport, HorizonReport
@@ -40,6 +41,7 @@ def document(
     missing_picture: Message | None = None,
     warning: Message | None = None,
     bodies: Sequence[Chapter] = (),
+    notes: Sequence[Message] = (),
 ) -> ReportDocument:
     """Lay an accuracy report out as chapters.
 
@@ -55,16 +57,20 @@ def document(
         Something the reader must know about the report itself, a missing font for one.
     bodies : sequence of Chapter
         Chapters of bodies, which follow those of the horizons.
+    notes : sequence of Message
+        What else the reader must know about the files of the run.
     """
     site = report.site or t("Site")
     title = report.title
     version = "geofit " + report.versions["geofit"]
     facts = ((t("Coordinate system"), report.crs or t("not stated")), (t("Program"), version))
     picture = Paragraph(translate(missing_picture, t), "warning") if missing_picture else Picture(report.picture, "")
+    stale = [horizon.name for horizon in report.horizons if horizon.stale]
+    warnings = [*([warning] if warning else []), *([stale_warning(stale)] if stale else [])]
     drawings = sections_chapter(report, t)
     chapters = [
-        cover(title, facts, picture, report.date, t, warning),
-        _summary(report, t),
+        cover(title, facts, picture, report.date, t, warnings),
+        _summary(report, notes, t),
         *([drawings] if drawings else []),
         *(horizon_chapter(horizon, t, missing_picture) for horizon in report.horizons),
         *bodies,
@@ -86,7 +92,7 @@ def document(
     )
 
 
-def _summary(report: AccuracyReport, t: Language) -> Chapter:
+def _summary(report: AccuracyReport, notes: Sequence[Message], t: Language) -> Chapter:
     blocks: list[Block] = [Heading(t("Verdict"))]
     columns = (
         Column(t("Horizon")),
@@ -114,6 +120,7 @@ def _summary(report: AccuracyReport, t: Language) -> Chapter:
     )
     for name, reason in report.failures.items():
         blocks.append(Paragraph(t("{name} could not be fitted: {reason}", name=name, reason=reason), "warning"))
+    blocks += [Paragraph(sentence(note, t), "warning") for note in notes]
     blocks += [*away_from_data(report, t), *limits_of_use(report, t)]
     return Chapter(t("Summary"), tuple(blocks))
 
@@ -122,7 +129,7 @@ def _verdict_row(horizon: HorizonReport, t: Language) -> tuple[Cell, ...]:
     _, checks, away = (_mark(lamp, t) for lamp in horizon.lamps)
     return (
         horizon.name,
-        verdict_badge(horizon.verdict, t),
+        verdict_badge(horizon.verdict, t, stale=bool(horizon.stale)),
         digits.metres(horizon.sigma),
         digits.given(horizon.epsilon),
         digits.metres(horizon.max_abs),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from geofit.data.languages import Language, translate
 from geofit.data.messages import Message, message
 from geofit.data.title_block import TitleBlock
@@ -36,7 +38,7 @@ _STATES = {
 
 def cover(
     title: TitleBlock, facts: tuple[tuple[str, str], ...], picture: Picture | Paragraph | None, date: str, t: Language,
-    warning: Message | None = None,
+    warnings: Sequence[Message] = (),
 ) -> Chapter:  # fmt: skip
     """Lay out the cover.
 
@@ -52,12 +54,10 @@ def cover(
         Of the report, ISO 8601.
     t : Language
         That of the words.
-    warning : Message or None
-        Something the reader must know about the report itself.
+    warnings : sequence of Message
+        What the reader must know about the report itself.
     """
-    blocks: list[Block] = []
-    if warning:
-        blocks.append(Paragraph(translate(warning, t), "warning"))
+    blocks: list[Block] = [Paragraph(translate(warning, t), "warning") for warning in warnings]
     if picture is not None:
         blocks.append(picture)
     state = translate(_STATES.get(title.status.casefold(), title.status), t)

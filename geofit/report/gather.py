@@ -222,6 +222,7 @@ def horizon_report(result: HorizonResult) -> HorizonReport:
         edits=result.edits,
         change=None if result.change is None else change_report(result.change),
         dips=_dips(result),
+        stale=result.stale,
     )
 
 

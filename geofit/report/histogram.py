@@ -68,14 +68,14 @@ def normal_plot(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
     from scipy.special import ndtri
 
     d = np.sort(result.accuracy.residuals[~result.core])
-    axes.set_title(t("Against a normal law"))
+    axes.set_title(t("Normal probability plot"))
     if np.abs(d).max(initial=0.0) < NOISE:
         _nothing(axes, t)
         return
     at = ndtri((np.arange(len(d)) + 0.5) / len(d))
-    axes.plot(at, d.mean() + d.std() * at, color=MUTED, lw=1.0, ls="dashed", label=t("normal law"), zorder=2)
+    axes.plot(at, d.mean() + d.std() * at, color=MUTED, lw=1.0, ls="dashed", label=t("normal distribution"), zorder=2)
     axes.plot(at, d, ".", ms=3.2, color=CORE, label=t("residuals"), zorder=3, rasterized=True)
-    axes.set_xlabel(t("quantile of the normal law"))
+    axes.set_xlabel(t("quantile of the normal distribution"))
     axes.set_ylabel(t("d, m"))
     axes.grid(color=LINE, lw=0.6, zorder=0)
     axes.set_axisbelow(True)

@@ -25,6 +25,7 @@ from geofit.report.document import (
 )
 from geofit.report.group_tables import group_blocks
 from geofit.report.prediction_blocks import prediction_blocks
+from geofit.report.stale_blocks import stale_blocks
 
 __all__ = ["horizon_chapter"]
 
@@ -32,6 +33,7 @@ __all__ = ["horizon_chapter"]
 def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | None = None) -> Chapter:
     """Lay out everything about one horizon."""
     blocks: list[Block] = [
+        *stale_blocks(h, t),
         lamps_paragraph(h.lamps, t),
         _facts(h, t),
         *_notes(h, t),
@@ -45,7 +47,7 @@ def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | No
         *prediction_blocks(h, t),
         *change_blocks(h.change, h.pictures.get("change", ""), t),
     ]
-    return Chapter(t("Horizon {name}", name=h.name), tuple(blocks), verdict_badge(h.verdict, t))
+    return Chapter(t("Horizon {name}", name=h.name), tuple(blocks), verdict_badge(h.verdict, t, stale=bool(h.stale)))
 
 
 def _facts(h: HorizonReport, t: Language) -> Facts:
@@ -111,7 +113,7 @@ def _deviations(h: HorizonReport, t: Language) -> list[Block]:
         interior=interior,
         control=control,
     )
-    law = t("Left: residuals of the points that are not interpolated. Right: the same against a normal law.")
+    law = t("Left: residuals of the points that are not interpolated. Right: their normal probability plot.")
     return [
         Heading(t("Residuals at the data")),
         Picture(pictures["deviation"], bands),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from geofit.data.languages import Language
+from geofit.data.languages import Language, translate
+from geofit.data.stale import stale_warning
 from geofit.report import digits
 from geofit.report.accuracy_report import AccuracyReport, HorizonReport, PredictionReport
 from geofit.report.document import Block, Column, Heading, Paragraph, ReportTable
@@ -78,6 +79,9 @@ def limits_of_use(report: AccuracyReport, t: Language) -> list[Block]:
             "with other data, fit again."
         )
     )
+    stale = [h.name for h in report.horizons if h.stale]
+    if stale:
+        sentences.append(translate(stale_warning(stale), t))
     return [Heading(t("Limits of use")), *(Paragraph(f"{i}. {text}") for i, text in enumerate(sentences, 1))]
 
 

@@ -62,7 +62,7 @@ def plan_scale(results: Sequence[HorizonResult], paper: str, scale: int | None =
         raise SettingsError(
             message(
                 "report.plan-without-scale",
-                "No scale up to 1:{scale} brings the plan onto {paper}. Choose larger paper.",
+                "No scale up to 1:{scale} fits the plan on {paper}. Choose larger paper.",
                 scale=scales_of(unit)[-1],
                 paper=paper,
             )

@@ -229,9 +229,9 @@ def _settling(found: PoresFindings, t: Language) -> list[Block]:
 def _made(found: PoresFindings, t: Language) -> list[Block]:
     names = {
         "r_min": t("smallest ball that makes a pore, voxels"),
-        "tau": t("share of the radius at which pores part"),
+        "tau": t("share of the radius at which pores separate"),
         "border": t("rule at the border of the sample"),
-        "hierarchy": t("how pores are parted"),
+        "hierarchy": t("how pores are separated"),
     }
     rows = [(names[key], _setting(value, t)) for key, value in found.network.settings.items() if key in names]
     edges = " × ".join(f"{edge * 1e6:.4g}" for edge in found.volume.voxel)

@@ -15,6 +15,7 @@ from geofit.data.messages import Message
 from geofit.data.points import PointSet
 from geofit.data.prediction import PredictionResult
 from geofit.data.site import ImportIssue, Site
+from geofit.data.stale import StaleCause
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report.profile import Profile
@@ -57,6 +58,8 @@ class HorizonResult:
         How the horizon moved since its data changed; None: no earlier state is known.
     horizon : str
         Name of the horizon where the surface is one fault block of it; else empty or the surface's own.
+    stale : tuple of StaleCause
+        What has changed since the surface was fitted; empty: nothing.
     """
 
     surface: HorizonFit
@@ -72,6 +75,7 @@ class HorizonResult:
     orders: tuple[Check, ...] = ()
     change: Comparison | None = None
     horizon: str = ""
+    stale: tuple[StaleCause, ...] = ()
 
     @property
     def verdict(self) -> Verdict:

@@ -77,7 +77,7 @@ def fitting_scale(views: Sequence[SectionView], paper: str, exaggeration: float 
     raise SettingsError(
         message(
             "report.section-without-scale",
-            "No scale up to 1:{scale} brings the sections onto {paper}. Choose larger paper or shorter sections.",
+            "No scale up to 1:{scale} fits the sections on {paper}. Choose larger paper or shorter sections.",
             scale=scales_of(unit)[-1],
             paper=paper,
         )

@@ -40,7 +40,7 @@ def single_document(
     block, day = title or TitleBlock(), date or today()
     version = "geofit " + versions()["geofit"]
     facts = ((t("Program"), version),)
-    front = cover(block, facts, Picture(picture, "") if picture else None, day, t, warning)
+    front = cover(block, facts, Picture(picture, "") if picture else None, day, t, [warning] if warning else [])
     return ReportDocument(
         name, subject, name, day, t.html, f"{version} · {day}", (front, chapter), reference=reference(block, t)
     )

@@ -93,7 +93,11 @@ def _contradictions(report: AccuracyReport, t: Language) -> list[Block]:
         "The horizons were separated as far as their exact points allow. Here these points "
         "contradict each other: check their rows."
     )
-    return [Heading(t("Crossings fixed by exact points"), 3), Paragraph(text, "warning"), ReportTable(columns, rows)]
+    return [
+        Heading(t("Crossings that remain because of exact points"), 3),
+        Paragraph(text, "warning"),
+        ReportTable(columns, rows),
+    ]
 
 
 def _faults(report: AccuracyReport, t: Language) -> list[Block]:

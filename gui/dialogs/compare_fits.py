@@ -87,7 +87,7 @@ class CompareDialog(QDialog):
             box.setAccessibleName(self.tr("Fit {side}").format(side="AB"[side]))
             for number, one in enumerate(self.fits, 1):
                 words = translated(title_of(one.provenance, number))
-                box.addItem(self.tr("{fit} (present)").format(fit=words) if number == now + 1 else words)
+                box.addItem(self.tr("{fit} (current)").format(fit=words) if number == now + 1 else words)
             box.setCurrentIndex((other, now)[side])
         for side, view in enumerate(self.views):
             view.set_dark(is_dark(self.palette()))

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import partial
-from glob import escape
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,6 @@ from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import (
     QButtonGroup,
     QComboBox,
-    QFileDialog,
     QFormLayout,
     QHBoxLayout,
     QHeaderView,
@@ -30,6 +28,7 @@ from PySide6.QtWidgets import (
 from geofit.data.accuracy import Check
 from geofit.data.files import file_stems
 from geofit.data.messages import message
+from geofit.data.stale import stale_warning
 from geofit.data.title_block import TitleBlock
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
@@ -37,6 +36,7 @@ from geofit.gui.dialogs.step_fields import SignedFields
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.marks import icon, level_mark, verdict_mark
 from geofit.gui.panels.tables import DataTable, TableColumn
+from geofit.gui.save_file import ask_save_file
 from geofit.gui.translate import translated
 from geofit.project.step_files import StepFile, step_paths, write_step_files
 from geofit.report import digits
@@ -60,8 +60,10 @@ class ExportDialog(TaskDialog):
         folder: Path | None = None,
         title: TitleBlock | None = None,
         datum: tuple[float, float, float] | None = None,
+        stale: Collection[str] = (),
     ) -> None:
         super().__init__(parent)
+        self._stale = stale
         self._verdicts = verdicts or {}
         self.setWindowTitle(self.tr("Export STEP"))
         # The patches are all that a file holds; what stands behind them need not travel to the other process.
@@ -78,7 +80,7 @@ class ExportDialog(TaskDialog):
         self.stated = SignedFields(self, title or TitleBlock(), datum)
         self.author, self.organisation = self.stated.author, self.stated.organisation
         self.origin, self.certificate = self.stated.origin, self.stated.certificate
-        self.together, self.apart = QRadioButton(self.tr("&One file")), QRadioButton(self.tr("One file a &horizon"))
+        self.together, self.apart = QRadioButton(self.tr("&One file")), QRadioButton(self.tr("One file per &horizon"))
         self.table = DataTable()
         self.table.setAccessibleName(self.tr("What the reader found in the file"))
         # The form stays where it is when the table comes.
@@ -95,7 +97,7 @@ class ExportDialog(TaskDialog):
         self.origin.datum.textChanged.connect(self.refresh)
         self.go.clicked.connect(self._write)
         self.folder.clicked.connect(self._open_folder)
-        self.say(self.tr("After writing, OpenCASCADE reads the file back; what it finds is listed here."))
+        self._tell(self.tr("After writing, OpenCASCADE reads the file back; what it finds is listed here."))
         self.refresh()
 
     def chosen(self) -> list[str]:
@@ -109,9 +111,15 @@ class ExportDialog(TaskDialog):
         for name, surface in self._surfaces.items():
             accuracy = surface.accuracy
             judged = None if accuracy is None else self._verdicts.get(name) or verdict_of(accuracy)
-            text = name if judged is None else f"{name}   {translated(judged.text)}"
-            item = QListWidgetItem(icon("none" if judged is None else level_mark(judged.level)), text)
-            item.setToolTip(text)
+            old = name in self._stale
+            title = self.tr("{name} (stale)").format(name=name) if old else name
+            text = title if judged is None else f"{title}   {translated(judged.text)}"
+            mark = "stale" if old else "none" if judged is None else level_mark(judged.level)
+            item = QListWidgetItem(icon(mark), text)
+            item.setToolTip(f"{text}\n{self.tr('Older than the settings: press Fit')}" if old else text)
+            font = item.font()
+            font.setItalic(old)
+            item.setFont(font)
             item.setData(Qt.ItemDataRole.UserRole, name)
             item.setFlags(item.flags() | Qt.ItemFlag.ItemIsUserCheckable)
             item.setCheckState(Qt.CheckState.Checked)
@@ -158,11 +166,9 @@ class ExportDialog(TaskDialog):
         self.resize(QSize(960, 640).boundedTo(self.screen().availableSize()))
 
     def _browse(self) -> None:
-        path, _ = QFileDialog.getSaveFileName(
-            self, self.windowTitle(), self.target.text(), self.tr("STEP files (*.step *.stp)")
-        )
-        if path:
-            self.target.setText(path)
+        chosen = ask_save_file(self, self.windowTitle(), self.target.text(), self.tr("STEP files (*.step *.stp)"))
+        if chosen is not None:
+            self.target.setText(str(chosen[0]))
 
     def _path(self) -> Path:
         path = Path(self.target.text().strip()).expanduser()
@@ -173,7 +179,8 @@ class ExportDialog(TaskDialog):
         surfaces = {name: self._surfaces[name] for name in names}
         self.files = []
         self.say(self.tr("Writing, and reading back what was written…"))
-        work = (surfaces, self._path(), self.unit.currentData(), self.apart.isChecked(), self.stated.signed())
+        unit, separate = self.unit.currentData(), self.apart.isChecked()
+        work = (surfaces, self._path(), unit, separate, self.stated.signed(), self._stale)
         paths = list(step_paths(names, work[1], separate=work[3]))
         self.begin(write_step_files, *work, on_done=self.show_files, on_stopped=partial(self._stopped, paths))
 
@@ -187,8 +194,8 @@ class ExportDialog(TaskDialog):
         pages = [file.certificate for file in files if file.certificate is not None]
         names = ", ".join(str(path.resolve()) for path in (*(file.path for file in files), *pages))
         if all(back.passed for back in found.values()):
-            self.say(self.tr("Wrote {names} ({size}). The file passes every check.").format(names=names, size=size),
-                      "passed")  # fmt: skip
+            self._tell(self.tr("Wrote {names} ({size}). The file passes every check.").format(names=names, size=size),
+                       "passed")  # fmt: skip
         else:
             bad = ", ".join(name for name, back in found.items() if not back.passed)
             text = self.tr(
@@ -196,8 +203,16 @@ class ExportDialog(TaskDialog):
                 "checks below; fit these horizons with a smaller tolerance or another core before you "
                 "pass the file on."
             )
-            self.say(text.format(names=names, size=size, bad=bad), "failed")
+            self._tell(text.format(names=names, size=size, bad=bad), "failed")
         self._show_checks([(name, check) for name, back in found.items() for check in self._checks(name, files)])
+
+    def _tell(self, text: str, mark: str = "none") -> None:
+        """Say something, and of chosen horizons that are stale what to do."""
+        old = [name for name in self.chosen() if name in self._stale]
+        if old:
+            text = f"{text}\n{translated(stale_warning(old))}"
+            mark = "failed" if mark == "failed" else "stale"
+        self.say(text, mark)
 
     def _checks(self, name: str, files: list[StepFile]) -> list[Check]:
         back = next(file.read_back[name] for file in files if name in file.read_back)
@@ -249,11 +264,11 @@ class ExportDialog(TaskDialog):
 
     def _stopped(self, files: list[Path]) -> None:
         """Sweep away what the ended process left half written."""
-        for file in files:
-            for name in (escape(file.stem), "geofit"):
-                for rest in file.parent.glob(f".{name}-????????.step"):
+        for folder in {file.parent for file in files}:
+            for pattern in (".geofit-????????.step", ".????????.part.step"):
+                for rest in folder.glob(pattern):
                     rest.unlink(missing_ok=True)
-        self.say(self.tr("Stopped. A file that was not finished is not there."))
+        self.say(self.tr("Stopped. No unfinished file was left."))
 
     def _open_folder(self) -> None:
         QDesktopServices.openUrl(QUrl.fromLocalFile(str(self.files[0].path.parent)))

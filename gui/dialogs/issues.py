@@ -7,7 +7,6 @@ from PySide6.QtWidgets import (
     QAbstractItemView,
     QDialog,
     QDialogButtonBox,
-    QFileDialog,
     QHeaderView,
     QLabel,
     QPushButton,
@@ -17,6 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.data.site import ImportIssue, Site
+from geofit.gui.save_file import ask_save_file
 from geofit.gui.translate import translated, user_language
 
 __all__ = ["IssuesDialog"]
@@ -65,13 +65,11 @@ class IssuesDialog(QDialog):
         self.resize(900, 480)
 
     def _export(self) -> None:
-        from pathlib import Path
-
         from geofit.report.tables import write_issues
 
-        path, _ = QFileDialog.getSaveFileName(self, self.windowTitle(), "import_issues.csv", "CSV (*.csv)")
-        if path:
-            write_issues(self._site.issues, Path(path), user_language())
+        chosen = ask_save_file(self, self.windowTitle(), "import_issues.csv", "CSV (*.csv)")
+        if chosen is not None:
+            write_issues(self._site.issues, chosen[0], user_language())
 
 
 class _Issues(QAbstractTableModel):

@@ -44,8 +44,8 @@ class PlanSheetDialog(SheetDialog):
         if chosen in self._surfaces:
             self.which.setCurrentText(chosen)
         self.interval = LengthField(0.0, 1000.0, 0.0)
-        self.interval.setSpecialValueText(self.tr("By the relief"))
-        self.interval.setToolTip(self.tr("Distance between contours; 0: 1, 2 or 5 times a power of ten"))
+        self.interval.setSpecialValueText(self.tr("Automatic"))
+        self.interval.setToolTip(self.tr("Distance between contours; 0 chooses 1, 2 or 5 times a power of ten"))
         self.lay_out(((self.tr("&Horizon"), self.which), (self.tr("C&ontours every"), self.interval)))
         self.say(self.tr("Heights, holes with names, study area, scale bar, north arrow; every fifth contour heavy."))
         self.refresh()

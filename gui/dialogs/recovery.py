@@ -34,7 +34,7 @@ class RecoveryDialog(QDialog):
         self.setWindowTitle(self.tr("Bring back unsaved work"))
         self.chosen: Unfinished | None = None
         self.discarded = False
-        text = QLabel(self.tr("geofit did not end as it should. This work was not saved:"))
+        text = QLabel(self.tr("geofit did not close properly. This work was not saved:"))
         text.setWordWrap(True)
         self.list = QListWidget()
         self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)

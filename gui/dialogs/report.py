@@ -24,6 +24,7 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.data.site import Site
+from geofit.data.stale import stale_warning
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.preferences import Preferences
 from geofit.gui.translate import translated
@@ -90,10 +91,17 @@ class ReportDialog(TaskDialog):
         self._lay_out(site)
         self.go.clicked.connect(self._write)
         self.view.clicked.connect(self.open_result)
-        words = self.tr("Horizons: {names}").format(names=", ".join(result.name for result in self._results))
+        titles = [
+            self.tr("{name} (stale)").format(name=result.name) if result.stale else result.name
+            for result in self._results
+        ]
+        words = self.tr("Horizons: {names}").format(names=", ".join(titles))
         if self._bodies:
             words += " · " + self.tr("Bodies: {names}").format(names=", ".join(self._bodies))
-        self.say(words, "report")
+        stale = [result.name for result in self._results if result.stale]
+        if stale:
+            words += f"\n{translated(stale_warning(stale))}"
+        self.say(words, "stale" if stale else "report")
         self.refresh()
 
     def open_result(self) -> None:

@@ -14,7 +14,6 @@ from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
     QDoubleSpinBox,
-    QFileDialog,
     QFormLayout,
     QHBoxLayout,
     QLineEdit,
@@ -27,6 +26,7 @@ from geofit.data.errors import GeofitError
 from geofit.data.site import Site
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.lengths import coordinate_unit, length_mark, length_unit, metres_shown, shown_length
+from geofit.gui.save_file import ask_save_file
 from geofit.gui.translate import failure
 from geofit.project.section_sheet import SheetForm
 from geofit.report.paper import PAPERS, SheetTitle, drawing_scale, scales_of
@@ -132,9 +132,10 @@ class SheetDialog(TaskDialog):
         self.open_folder.clicked.connect(self._open_folder)
 
     def _browse(self) -> None:
-        path, _ = QFileDialog.getSaveFileName(self, self.windowTitle(), self.target.text())
-        if path:
-            self.target.setText(path)
+        kinds = ";;".join(f"{form.upper()} (*.{form})" for form in self.wanted() or self.forms)
+        chosen = ask_save_file(self, self.windowTitle(), self.target.text(), kinds)
+        if chosen is not None:
+            self.target.setText(str(chosen[0]))
 
     def _open_folder(self) -> None:
         for file in self.files[:1]:
@@ -148,7 +149,7 @@ class SheetDialog(TaskDialog):
             return
         self.files = ()
         self.say(self.drawing)
-        stopped = partial(self.say, self.tr("Stopped. A file that was not finished is not there."))
+        stopped = partial(self.say, self.tr("Stopped. No unfinished file was left."))
         self.begin(function, *arguments, on_done=self._written, on_stopped=stopped)
 
     def _written(self, made: tuple[int, tuple[Path, ...]]) -> None:

@@ -44,7 +44,7 @@ class OriginField(QWidget):
         self.choice.addItem(self.tr("project datum"), "datum")
         self.choice.setToolTip(
             self.tr(
-                "Where the file has its zero. Local files state the offset, and reading them here restores map "
+                "Origin of the file's coordinates. Local files state the offset, and reading them here restores map "
                 "coordinates; other programs show the offset with the attributes."
             )
         )

@@ -24,7 +24,7 @@ class StepsDialog(QDialog):
         self.list.setAccessibleName(self.tr("Steps of this session"))
         self.list.setEmptyLabel(self.tr("As opened"))
         self.list.setCleanIcon(QIcon())
-        self.words = QLabel(self.tr("A click undoes or does again everything up to that step."))
+        self.words = QLabel(self.tr("Click a step to undo or redo everything up to it."))
         self.words.setWordWrap(True)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
         buttons.rejected.connect(self.close)

@@ -91,7 +91,7 @@ def test_stop_ends_the_process_and_leaves_no_file(qtbot, tmp_path, monkeypatch):
     qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     assert not dialog.target.isEnabled()
     qtbot.waitUntil(dialog.stop.isVisible)
-    for name in (".dam-k3y8x1qz.step", ".geofit-uh9ar_wx.step"):
+    for name in (".geofit-uh9ar_wx.step", ".0f3a77c1.part.step"):
         (tmp_path / name).write_text("what a process that is ended leaves behind")
     press(qtbot, dialog, dialog.stop)
     assert "Stopped" in dialog.message.text()

@@ -1,0 +1,99 @@
+"""What leaves the window of a stale surface says so: the dialogs, and the report with the hashes of the fit."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+
+import pytest
+
+from geofit.gui.dialogs.export_step import ExportDialog
+from geofit.gui.dialogs.report import ReportDialog
+
+pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
+
+
+def sha256(file):
+    return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+@pytest.fixture
+def stale(app, tmp_path):
+    """Two fitted horizons; then a point of the first changes, and the data are read again, without another fit."""
+    rows = [
+        f"{10 * i},{10 * j},{top + i - 0.5 * j + 0.1 * (i * j % 3)},{name}"
+        for name, top in (("T2", 100), ("T3", 50))
+        for i in range(6)
+        for j in range(6)
+    ]
+    file = tmp_path / "picks.csv"
+    file.write_text("x,y,z,horizon\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    (tmp_path / "site.toml").write_text('[site]\nname = "S"\n[[picks]]\nfile = "picks.csv"\n', encoding="utf-8")
+    app.window.files.open(tmp_path / "site.toml")
+    app.idle()
+    for name in ("T2", "T3"):
+        app.window.fitting.fit(name)
+        app.idle()
+    then = sha256(file)
+    file.write_text(file.read_text(encoding="utf-8").replace("0,0,100.0", "0,0,199.0"), encoding="utf-8")
+    app.window.living.reload()
+    app.idle()
+    assert app.document.stale("T2")
+    assert not app.document.stale("T3")
+    return file, then
+
+
+def opened(app, monkeypatch, name):
+    """Return the dialog that an action opens, without waiting for its end."""
+    found = []
+    kind = {"report": ReportDialog, "export_step": ExportDialog}[name]
+    monkeypatch.setattr(kind, "exec", lambda dialog: found.append(dialog))
+    getattr(app.window.delivering, name)()
+    (dialog,) = found
+    app.qtbot.addWidget(dialog)
+    return dialog
+
+
+def test_the_report_states_the_hash_of_the_fit(app, stale, tmp_path, monkeypatch):
+    file, then = stale
+    dialog = opened(app, monkeypatch, "report")
+    assert "T2 (stale), T3" in dialog.message.text()
+    assert "Fit again" in dialog.message.text()
+    monkeypatch.setattr(dialog, "open_result", lambda: None)
+    dialog.folder.setText(str(tmp_path / "out"))
+    dialog.examine.setChecked(False)
+    for form, box in dialog.forms.items():
+        box.setChecked(form == "json")
+    dialog.go.click()
+    app.qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
+    assert "Wrote" in dialog.message.text()
+    assert "Fit again" in dialog.message.text()
+    first, second = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))["horizons"]
+    assert {"kind": "file", "name": "picks.csv", "fitted": then, "now": sha256(file)} in first["stale"]
+    assert second["stale"] == []
+
+
+def test_the_step_dialog_marks_the_stale_horizon_and_says_what_to_do(app, stale, tmp_path, monkeypatch):
+    dialog = opened(app, monkeypatch, "export_step")
+    first, second = (dialog.horizons.item(row) for row in range(2))
+    assert first.text().startswith("T2 (stale)")
+    assert first.font().italic()
+    assert "press Fit" in first.toolTip()
+    assert "stale" not in second.text()
+    assert not second.font().italic()
+    assert "earlier data or settings: T2." in dialog.message.text()
+    dialog.target.setText(str(tmp_path / "dam.step"))
+    dialog.stated.certificate.setChecked(True)
+    dialog.go.click()
+    app.qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
+    assert "Wrote" in dialog.message.text()
+    assert "earlier data or settings: T2." in dialog.message.text()
+    certificate = pdfium.PdfDocument(dialog.files[0].certificate)
+    try:
+        text = " ".join(certificate[0].get_textpage().get_text_range().split())
+        assert len(certificate) == 1
+    finally:
+        certificate.close()
+    assert "T2 ! PASS (stale)" in text
+    assert "T3 ✓ PASS" in text
+    assert "earlier data or settings: T2." in text
