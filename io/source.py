@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from geofit.data.errors import InputError
-from geofit.data.files import is_file
+from geofit.data.files import is_file, note_input
 from geofit.data.given import arguments_checked
 from geofit.data.legible import legible
 from geofit.data.messages import message
@@ -61,6 +61,7 @@ class Source:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))
+        note_input(self.path)
         name = self.name or legible(self.path.name) or legible(str(self.path))
         mark = f" [{self.table}]" if self.table else ""
         object.__setattr__(self, "name", name if name.endswith(mark) else name + mark)
@@ -112,7 +113,7 @@ class Source:
                 message("data.file-missing", "There is no such file"),
                 message(
                     "io.path-searched",
-                    "It was looked for at {path}; names in a site file count from the site file's folder.",
+                    "It was looked for at {path}; names in a site file are relative to the site file's folder.",
                     path=self.path,
                 ),
                 file=self.name,

@@ -90,7 +90,7 @@ def read_in_child(path: str | PathLike[str], reader: str) -> dict[str, Any]:
                 source,
                 message(
                     "cad.reading-crashed",
-                    "The file is damaged: reading it ends OpenCASCADE (exit code {code})",
+                    "The file is damaged: OpenCASCADE crashes when it reads it (exit code {code})",
                     code=ended,
                 ),
             )

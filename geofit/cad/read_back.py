@@ -169,7 +169,7 @@ def read_back(
             if proven
             else message(
                 "cad.shell-does-not-cross-itself",
-                "OpenCASCADE's boolean argument analyser is silent",
+                "OpenCASCADE's boolean argument analyser finds no self-intersection",
             ),
         ),
         _normal_check(found, seams),
@@ -242,7 +242,7 @@ def _distances(surface: FittedSurface, shape: FileShape, found: Surface) -> tupl
         apart = np.abs(length - np.abs(ours.distance[chosen])).max()
         how = message(
             "cad.projection-of-both",
-            "OpenCASCADE's projection of {count}; ours of the others, at most {apart:.1e} m from it",
+            "{count} projected by OpenCASCADE, the others by geofit; the two agree within {apart:.1e} m",
             count=len(chosen),
             apart=float(apart),
         )

@@ -79,7 +79,7 @@ def shell(surface: Surface) -> Any:
         raise StitchError(
             message(
                 "cad.outline-not-reached-at-all",
-                "'{name}' does not reach into its outline; give an outline that it covers.",
+                "'{name}' covers no part of its outline; give an outline that it covers.",
                 name=surface.name,
             )
         )

@@ -6,8 +6,6 @@ origin; the offset to map coordinates is the placement of the product.
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -25,7 +23,7 @@ from geofit.cad.step_attributes import attributes_of_body, with_attributes
 from geofit.cad.step_origin import StepFields, offset_attributes, offset_of, offset_words
 from geofit.data.accuracy import Check
 from geofit.data.errors import InputError, StitchError
-from geofit.data.files import cannot_write
+from geofit.data.files import replacing
 from geofit.data.messages import message
 from geofit.splines.patch import Patch
 
@@ -135,14 +133,10 @@ def _write(
 
     from geofit import __version__
     from geofit.cad.imported import empty_document, quiet
-    from geofit.cad.step_text import canonical
+    from geofit.cad.step_text import canonical, read_written
 
-    try:
-        handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=".step")
-    except OSError as error:
-        raise cannot_write(error, target) from None
-    os.close(handle)
-    try:
+    with replacing(target) as part:
+        part.touch()  # the system's reason where it refuses: OpenCASCADE gives none
         with _parameters(nurbs=nurbs), quiet():
             filled = empty_document()
             tool = XCAFDoc_DocumentTool.ShapeTool_s(filled.Main())
@@ -165,17 +159,11 @@ def _write(
             header.SetOriginatingSystem(TCollection_HAsciiString(f"geofit {__version__}"))
             if about := offset_words(offset):
                 header.SetDescriptionValue(1, TCollection_HAsciiString(about))
-            if writer.Write(temporary) != IFSelect_RetDone:
+            if writer.Write(str(part)) != IFSelect_RetDone:
                 raise InputError(
                     message("cad.file-not-written-by-opencascade", "OpenCASCADE cannot write the file"),
                     message("cad.check-disk", "Check the disk."),
                     file=str(target),
                 )
-        text = canonical(Path(temporary).read_text("utf-8"), stated.get("colour", ""))
-        Path(temporary).write_text(with_attributes(text, [attributes]), "ascii", newline="\n")
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, target)
-    except OSError as error:
-        raise cannot_write(error, target) from None
-    finally:
-        Path(temporary).unlink(missing_ok=True)
+        text = canonical(read_written(part), stated.get("colour", ""))
+        part.write_text(with_attributes(text, [attributes]), "ascii", newline="\n")

@@ -27,7 +27,7 @@ from geofit.cad.read_back import read_back
 from geofit.cad.sewing import shell
 from geofit.cad.step_attributes import attributes_of, with_attributes
 from geofit.cad.step_origin import Origin, offset_attributes, offset_of, offset_words
-from geofit.cad.step_text import canonical
+from geofit.cad.step_text import canonical, read_written
 from geofit.data.accuracy import ReadBack
 from geofit.data.columns import LARGEST
 from geofit.data.errors import InputError
@@ -133,7 +133,7 @@ def store_step(
         )
     if unit not in UNITS:
         raise InputError(
-            message("cad.unit-unknown", "A STEP file in '{unit}' is unknown", unit=unit),
+            message("cad.unit-unknown", "The unit '{unit}' of a STEP file is unknown", unit=unit),
             message("cad.known-names", "Choose {names}.", names=" or ".join(UNITS)),
             file=str(target),
         )
@@ -143,7 +143,8 @@ def store_step(
             raise InputError(
                 message(
                     "cad.control-point-too-far",
-                    "A control point of '{name}' is {reach:.3g} m from 0; at most {most:.0e} m are written",
+                    "A control point of '{name}' has a coordinate of {reach:.3g} m; at most {most:.0e} m can be "
+                    "written",
                     name=name,
                     reach=reach,
                     most=LARGEST,
@@ -320,8 +321,7 @@ def _save(
     try:
         # Beside its place, unless OpenCASCADE could not open it there.
         beside = legible(str(target.parent)) == str(target.parent)
-        prefix = f".{target.stem if legible(target.stem) == target.stem else 'geofit'}-"
-        handle, temporary = tempfile.mkstemp(dir=target.parent if beside else None, prefix=prefix, suffix=".step")
+        handle, temporary = tempfile.mkstemp(dir=target.parent if beside else None, prefix=".geofit-", suffix=".step")
     except OSError as error:
         raise cannot_write(error, target) from None
     os.close(handle)
@@ -347,9 +347,11 @@ def _save(
                 file=str(target),
             )
         with replacing(target) as part:
-            text = with_attributes(canonical(Path(temporary).read_text("utf-8")), attributes)
+            text = with_attributes(canonical(read_written(temporary)), attributes)
             part.write_text(text, "ascii", newline="\n")
-    except (OSError, ValueError):  # ValueError: a text that was cut off in the middle
+    except OSError as error:
+        raise cannot_write(error, target) from None
+    except ValueError:  # a text that was cut off in the middle
         raise InputError(
             message("cad.disk-full", "The file cannot be written: the disk may be full"),
             message("cad.make-room", "Make room, or name another folder."),

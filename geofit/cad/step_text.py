@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
-__all__ = ["canonical", "shaped_products"]
+__all__ = ["canonical", "read_written", "shaped_products"]
 
 #: Colours of the products in turn (red, green, blue): earth tones that stay apart.
 COLOURS = ((0.76, 0.60, 0.42), (0.55, 0.64, 0.45), (0.45, 0.56, 0.68), (0.70, 0.47, 0.43), (0.60, 0.52, 0.66))
@@ -23,6 +24,21 @@ STYLE = """\
 #{7} = FILL_AREA_STYLE_COLOUR('',#{8});
 #{8} = COLOUR_RGB('',{red},{green},{blue});
 """
+
+
+def read_written(path: str | Path) -> str:
+    """Return the text of a file that OpenCASCADE wrote.
+
+    It breaks strings after 72 bytes, within a character of UTF-8 or a doubled quotation mark too. Line breaks in
+    strings have no meaning (ISO 10303-21), and are left out.
+
+    Raises
+    ------
+    ValueError
+        If the text was cut off within a character.
+    """
+    data = Path(path).read_bytes().replace(b"\r\n", b"\n")
+    return re.sub(rb"'[^']*(?:'\n*'[^']*)*'", lambda string: string[0].replace(b"\n", b""), data).decode("utf-8")
 
 
 def canonical(text: str, colour: str = "") -> str:

@@ -183,7 +183,7 @@ def _no_code(source: Path, holes: Boreholes | Site) -> InputError:
     counts = Counter(str(code) for campaign in campaigns for log in campaign.logs for code in log.code)
     frequent = ", ".join(f"{code} ({count})" for code, count in counts.most_common(12))
     return InputError(
-        message("cli.code-missing", "No code is named whose intervals lie in the body"),
+        message("cli.code-missing", "No code is given for the intervals in the body"),
         message("cli.name-code", "Name it with --code. The most frequent are: {codes}.", codes=frequent),
         file=str(source),
     )

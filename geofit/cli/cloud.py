@@ -40,7 +40,7 @@ def fit_cloud_file(
     if refused or len(horizons or ()) > 1:
         raise InputError(
             message("cli.not-for-clouds", "{option} is not for clouds", option=refused[0] if refused else "--horizon"),
-            message("cli.cloud-one-surface", "A cloud makes one surface over its own coordinates."),
+            message("cli.cloud-one-surface", "Leave it out: a cloud gives one surface over its own coordinates."),
             file=str(source),
         )
     roles = {"x": columns.get("x"), "y": columns.get("y"), "z": columns.get("z"), "horizon": columns.get("surface")}

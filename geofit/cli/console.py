@@ -8,7 +8,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec
 import typer
 
 from geofit.data.errors import Cancelled, GeofitError, InputError
-from geofit.data.files import cannot_write, folder_for
+from geofit.data.files import cannot_write, folder_for, inputs_kept
 from geofit.data.messages import Message, gravest_first
 from geofit.data.progress import Progress
 from geofit.data.site import ImportIssue, TableCount
@@ -68,37 +68,51 @@ FIRST_ISSUES = 5
 
 
 def with_exit_code(command: Callable[P, int]) -> Callable[P, None]:
-    """Turn a command's number into the exit code, and known errors into one clear line."""
+    """Turn a command's number into the exit code, and known errors into one clear line; keep the command's inputs."""
 
     @wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
+        with _kept(kwargs):
+            code = exit_code(*args, **kwargs)
+        raise typer.Exit(code)
+
+    def exit_code(*args: P.args, **kwargs: P.kwargs) -> int:
         try:
-            code = command(*args, **kwargs)
+            return command(*args, **kwargs)
         except Cancelled as stop:
             say(str(stop))
-            code = 130
+            return 130
         except KeyboardInterrupt:
             say("Stopped. Files that were begun have been removed; finished ones are whole.")
-            code = 130
+            return 130
         except GeofitError as error:
             _list_reasons(error, kwargs)
             say(f"geofit: {error}")
-            code = 2
+            return 2
         except OSError as error:
             # A full disk, a folder that may not be written: the user's to correct.
             if isinstance(error, BrokenPipeError):
                 raise
             say(f"geofit: {cannot_write(error, error.filename or 'a file')}")
-            code = 2
+            return 2
         except ImportError as error:
             advice = _system_library(str(error))
             if advice is None:
                 raise
             say(f"geofit: {advice}")
-            code = 2
-        raise typer.Exit(code)
+            return 2
 
     return run
+
+
+def _kept(options: Mapping[str, object]) -> AbstractContextManager[None]:
+    """Keep the files that a command names from its results; a command without results may save what it opened."""
+    target = next((name for name in ("out", "site") if name in options), None)
+    if target is None:
+        return nullcontext()
+    given = [value for name, value in options.items() if name != target]
+    several = (value if isinstance(value, list) else [value] for value in given)
+    return inputs_kept(path for values in several for path in values if isinstance(path, Path))
 
 
 def _list_reasons(error: GeofitError, options: Mapping[str, object]) -> None:

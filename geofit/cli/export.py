@@ -111,6 +111,7 @@ def _write_step(
     surfaces: Mapping[str, PatchSurface | MeshSurface], out: Path, site: Site | None, signed: Signed
 ) -> list[Path]:
     """Write STEP; surfaces whose points are known state sigma, epsilon and the hash of the points."""
+    from geofit.data.files import folder_for
     from geofit.fitting.judge import judge
     from geofit.io.export.write import need_patches
     from geofit.project.step_files import write_step_files
@@ -124,6 +125,6 @@ def _write_step(
         name: judge(surface, known[name], settings.get(name), name) if name in known else surface
         for name, surface in surfaces.items()
     }
-    out.parent.mkdir(parents=True, exist_ok=True)
+    folder_for(out.parent)
     (file,) = write_step_files(measured, out, "m", separate=False, signed=signed, progress=lambda *_: True)
     return [file.path] if file.certificate is None else [file.path, file.certificate]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -10,6 +11,9 @@ import typer
 from geofit.cli.app import app
 from geofit.cli.console import listening, print_counts, print_issues, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Json, LengthUnit
+from geofit.data.errors import InputError
+from geofit.data.files import refuse_inputs
+from geofit.data.messages import message
 
 __all__ = ["import_"]
 
@@ -24,14 +28,21 @@ def import_(
     unit: LengthUnit = None,
     base: Annotated[list[str] | None, typer.Option(help="Code whose base is a horizon; may be repeated.")] = None,
     top: Annotated[list[str] | None, typer.Option(help="Code whose top is a horizon; may be repeated.")] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace a site file, or a mapping beside it, that is there already.")
+    ] = False,
     as_json: Json = False,
 ) -> int:
     """Recognise files and bind them in a site file. Exit code 1: no horizon yet, 2: no row can be used."""
     from dataclasses import asdict, astuple
 
     from geofit.io.mapping import load_mappings
-    from geofit.project.importing import import_files
+    from geofit.project.importing import import_files, issue_file_of, mapping_file_of
 
+    written = (site, mapping_file_of(site))
+    refuse_inputs((*written, issue_file_of(site)))
+    if not force:
+        _refuse_existing(written)
     mappings = load_mappings(mapping) if mapping is not None else ()
     with listening() as progress:
         found = import_files(
@@ -58,3 +69,14 @@ def import_(
         say("The site has no horizon yet: add intervals, sections, traces or picks.")
     say(f"Site file: {found.site_file}. Kinds and columns, to be corrected by hand: {found.mapping_file}")
     return found.exit_code
+
+
+def _refuse_existing(files: Iterable[Path]) -> None:
+    """Refuse to replace a site file or a mapping: somebody may have written or corrected it by hand."""
+    for file in files:
+        if file.exists():
+            raise InputError(
+                message("cli.import-file-exists", "The file is there already, and may have been edited by hand"),
+                message("cli.name-other-site-file", "Name another site file, or replace it with --force."),
+                file=str(file),
+            )

@@ -36,7 +36,7 @@ def read_source(
         if given:
             raise InputError(
                 message("cli.option-for-tables", "{option} is for tables of points", option=given[0]),
-                message("cli.site-file-has-columns", "A site file names its own columns."),
+                message("cli.site-file-has-columns", "Leave it out: a site file names its own columns."),
                 file=str(source),
             )
         site = read_site(source)
@@ -89,7 +89,7 @@ def _like_collars(source: Path, columns: Mapping[str, str | None]) -> tuple[Impo
             ),
             message(
                 "cli.import-collars",
-                "Bind collars and logs with geofit import, or name the column of the elevations with --z.",
+                "Combine collars and logs with geofit import, or name the column of the elevations with --z.",
             ),
         ),
     )

@@ -8,6 +8,7 @@ import re
 import unicodedata
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -16,10 +17,71 @@ from geofit.data.errors import InputError
 from geofit.data.legible import legible
 from geofit.data.messages import Message, message
 
-__all__ = ["cannot_write", "file_stems", "folder_for", "is_file", "replacing", "spreadsheet_cell"]
+__all__ = [
+    "cannot_write",
+    "file_stems",
+    "folder_for",
+    "inputs_kept",
+    "is_file",
+    "note_input",
+    "refuse_inputs",
+    "replacing",
+    "spreadsheet_cell",
+]
 
 _RESERVED = {"con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt") for i in range(1, 10))}
-_LONGEST = 80
+#: Bytes of a stem in UTF-8: file systems take names of 255, with all that is added to a stem.
+_LONGEST = 150
+#: Files that the run in progress reads; None outside a run: a window may save what it opened.
+_INPUTS: ContextVar[set[Path] | None] = ContextVar("inputs", default=None)
+
+
+@contextmanager
+def inputs_kept(paths: Iterable[Path]) -> Iterator[None]:
+    """Keep the inputs of a run from being replaced by its results: ``paths``, and all that is noted in the block."""
+    token = _INPUTS.set(set(paths))
+    try:
+        yield
+    finally:
+        _INPUTS.reset(token)
+
+
+def note_input(path: Path) -> None:
+    """Note a file that is going to be read; outside :func:`inputs_kept` nothing is kept."""
+    inputs = _INPUTS.get()
+    if inputs is not None:
+        inputs.add(path)
+
+
+def refuse_inputs(paths: Iterable[Path]) -> None:
+    """Refuse to write where an input of the run is, under whatever name.
+
+    Raises
+    ------
+    InputError
+        If one of the paths is a file that the run reads.
+    """
+    inputs = _INPUTS.get() or set()
+    for path in paths:
+        if inputs and _is_one(path, inputs):
+            raise InputError(
+                message("data.output-is-input", "The file is an input of this run, and a result would replace it"),
+                message("data.name-another-output", "Name another file or folder for the results."),
+                file=str(path),
+            )
+
+
+def _is_one(path: Path, files: Iterable[Path]) -> bool:
+    """Whether a path leads to one of some files: by a link, or in letters of another case where that does not count."""
+    try:
+        state = path.stat()
+    except (OSError, ValueError):  # it is not there, or no file can have such a name
+        return False
+    for file in files:
+        with suppress(OSError, ValueError):
+            if os.path.samestat(state, file.stat()):
+                return True
+    return False
 
 
 @contextmanager
@@ -29,7 +91,8 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     Raises
     ------
     InputError
-        If the system refuses to write the file (a full disk, no permission), with its name and the remedy.
+        If the system refuses to write the file (a full disk, no permission), with its name and the remedy; or if
+        the file is an input of the run (:func:`inputs_kept`).
 
     Examples
     --------
@@ -40,8 +103,11 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     ...     (Path(folder) / "a.txt").read_text(encoding="utf-8")
     'whole'
     """
-    path = Path(path)
-    part = path.with_name(f".{path.stem}.{uuid4().hex[:8]}.part{path.suffix}")
+    # A link stays one: what it leads to is replaced.
+    path = Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
+    refuse_inputs([path])
+    # Short: the name of the file may be as long as the system allows.
+    part = path.with_name(f".{uuid4().hex[:8]}.part{path.suffix}")
     try:
         yield part
         os.replace(part, path)
@@ -122,25 +188,39 @@ def spreadsheet_cell(cell: Any) -> Any:
     return cell
 
 
-def file_stems(names: Iterable[str]) -> dict[str, str]:
+def file_stems(names: Iterable[str], endings: Iterable[str] = ("",), taken: Iterable[str] = ()) -> dict[str, str]:
     """Return a file name (without ending) for each horizon, no two alike where case does not count.
 
-    Letters of any script, digits, ``-``, ``_`` and inner dots stay; everything else becomes ``_``.
+    Letters of any script, digits, ``-``, ``_`` and inner dots stay; everything else becomes ``_``. Names beyond 150
+    bytes of UTF-8 are cut.
+
+    Parameters
+    ----------
+    names : iterable of str
+        The horizons.
+    endings : iterable of str
+        What is added to a stem: no stem with an ending is another one with an ending.
+    taken : iterable of str
+        Files that no stem with an ending may be.
 
     Examples
     --------
     >>> file_stems(["T3/T2", "强风化下限", "t3_t2"])
     {'T3/T2': 'T3_T2', '强风化下限': '强风化下限', 't3_t2': 't3_t2-2'}
+    >>> file_stems(["A", "A_upper90", "report"], (".step", "_upper90.step", ".pdf"), ["report.pdf"])
+    {'A': 'A', 'A_upper90': 'A_upper90-2', 'report': 'report-2'}
     """
     stems: dict[str, str] = {}
-    taken: set[str] = set()
-    for name in names:
-        stem = re.sub(r"[^\w.-]+", "_", unicodedata.normalize("NFC", name)).strip("._- ")[:_LONGEST]
+    endings, used = [ending.casefold() for ending in endings], {file.casefold() for file in taken}
+    for name in dict.fromkeys(names):
+        stem = re.sub(r"[^\w.-]+", "_", unicodedata.normalize("NFC", name)).strip("._- ")
+        # A letter that the cut goes through is left out.
+        stem = stem.encode()[:_LONGEST].decode(errors="ignore").rstrip("._- ")
         if not stem or stem.split(".")[0].casefold() in _RESERVED:
             stem = f"horizon_{stem}".rstrip("_")
         unique, turn = stem, 2
-        while unique.casefold() in taken:
+        while used & (files := {unique.casefold() + ending for ending in endings}):
             unique, turn = f"{stem}-{turn}", turn + 1
-        taken.add(unique.casefold())
+        used |= files
         stems[name] = unique
     return stems

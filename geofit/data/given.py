@@ -272,10 +272,10 @@ def _is_side(letters: dict[str, int], stated: str, length: int) -> bool:
 def _compare_values(known: Signature, given: Mapping[str, Any]) -> None:
     """Refuse values that no function can work with: the last resort after an error that is not one of geofit's.
 
-    An infinite number that is the argument's default is not to blame.
+    A value that is the argument's default, infinite or empty, is not to blame.
     """
     for name, value in given.items():
-        if isinstance(value, float) and value == known.parameters[name].default:
+        if isinstance(value, float | str) and value == known.parameters[name].default:
             continue
         _refuse_ragged(name, value)
         if isinstance(value, str | os.PathLike):

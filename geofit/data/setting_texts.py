@@ -169,8 +169,8 @@ SETTINGS: Mapping[str, SettingText] = {
         message("data.setting-dips", "Measured dips"),
         message(
             "data.setting-dips-about",
-            "Check: dips measured on the horizon are compared with the surface. Fit: they are data as well, and the "
-            "surface takes their slope as far as their accuracy asks for it.",
+            "Check: dips measured on the horizon are compared with the surface. Fit: they are also data, and the "
+            "surface follows their slope within their accuracy.",
         ),
         choices={
             "check": message("data.checked", "Checked"),

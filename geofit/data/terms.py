@@ -177,7 +177,7 @@ TERMS: frozenset[str] = frozenset(
         "merging",
         "missing",
         "next holes",
-        "normal law",
+        "normal distribution",
         "normality",
         "normals",
         "north",

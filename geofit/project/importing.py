@@ -33,7 +33,7 @@ from geofit.io.source import Source
 from geofit.io.units import metres_of
 from geofit.project.import_tables import Tables, site_tables
 
-__all__ = ["Import", "import_files", "issue_file_of"]
+__all__ = ["Import", "import_files", "issue_file_of", "mapping_file_of"]
 
 #: Fewer contacts make no surface: the code gets no [[horizon]] unless it is asked for.
 FEWEST_CONTACTS = 3
@@ -121,7 +121,7 @@ def import_files(
     if unit is not None:
         metres_of(unit)
     folder = folder_for(site_file.parent)
-    mapping_file = site_file.with_name(f"{site_file.stem}_mapping.toml")
+    mapping_file = mapping_file_of(site_file)
     plan = ImportPlan()
     for i, file in enumerate(files):
         tell(progress, "inspect files", 0.3 * i / len(files))
@@ -151,6 +151,11 @@ def import_files(
     write_issues(issues, issue_file, language)
     tell(progress, "imported", 1.0)
     return Import(site, site_file, mapping_file, issue_file, issues, counts)
+
+
+def mapping_file_of(site_file: Path) -> Path:
+    """Return where the import of a site writes how its tables are read."""
+    return site_file.with_name(f"{site_file.stem}_mapping.toml")
 
 
 def issue_file_of(site_file: Path) -> Path:
@@ -311,7 +316,7 @@ def _spellings(logs: Sequence[IntervalLog], plan: ImportPlan) -> list[tuple[str,
                 "Codes that differ in case only count as one bed: {names}",
                 names=", ".join(f"{code} ({counts[code]})" for code in codes),
             ),
-            message("project.split-codes-in-site-file", "Give each its own [[horizon]] where they are two."),
+            message("project.split-codes-in-site-file", "If they are two horizons, give each its own [[horizon]]."),
         )
         if issue not in plan.issues:
             plan.issues.append(issue)

@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 
 from geofit.data.accuracy import Check
 from geofit.data.errors import InputError
-from geofit.data.files import file_stems, folder_for, replacing
+from geofit.data.files import folder_for, replacing
 from geofit.data.guard import guarded
 from geofit.data.languages import EN, Language
 from geofit.data.messages import EMPTY, Message, message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Section, Site
 from geofit.project.horizon_files import Made, section_profiles, storage_compared, write_horizon
+from geofit.project.run_files import RunFiles, earlier_files, files_in, removed, run_files
 from geofit.project.side_by_side import Crew, crew
 from geofit.project.single_reports import BodyPart, write_body_part
 from geofit.project.step_files import Signed
@@ -97,7 +98,9 @@ def run_horizons(
     """Fit horizons of a site, examine them, and write everything that belongs to them.
 
     Each horizon, of a faulted one each block, leaves ``.step``, ``.png``, ``.json`` and ``_residuals.csv``; the site
-    ``report.html``, ``report.json``, ``site.png``, ``import_issues.csv`` and, if asked for, ``report.pdf``.
+    ``report.html``, ``report.json``, ``site.png``, ``import_issues.csv`` and, if asked for, ``report.pdf``. Files that
+    an earlier run left of the same horizons, bodies and report are removed if a report was written; those of other
+    horizons and bodies stay. A warning lists either.
 
     Parameters
     ----------
@@ -139,7 +142,7 @@ def run_horizons(
     Raises
     ------
     InputError
-        If the site has no such horizon.
+        If the site has no such horizon, or a result would replace an input of the run.
     MissingDependencyError
         If the report is to be in Chinese and the machine has no font for it.
     Cancelled
@@ -152,8 +155,9 @@ def run_horizons(
         from geofit.report.fonts import pdf_fonts
 
         pdf_fonts(chinese=True)  # told before anything is fitted
+    files = run_files(out, site.horizons, names, bodies)  # refused before anything is fitted
+    before = files_in(folder_for(out))
     # Also when there is nothing to list: a file of an earlier run would mislead.
-    folder_for(out)
     _write_issues(site, out, language)
     with crew(min(workers, len(names))) if hands is None else nullcontext(hands) as ours:
         listen = _within(progress, 0.0, FITS)
@@ -166,9 +170,42 @@ def run_horizons(
         where = Where(scheduler or "local", workers) if apart else HERE
         stated = signed or Signed(site.title.author, site.title.organisation)
         stated = stated.about(_corners(site, fits))
-        result = _write_results(site, fits, out, ours, progress, language, date, pdf, bands, bodies, where, stated)
+        files = run_files(out, site.horizons, names, bodies, fits.surfaces)
+        others = _others_left(files, before)
+        result = _write_results(site, fits, files, ours, progress, language, date, pdf, bands, where, stated, others)
     clear_kept(out / FITTED)
-    return result
+    stale, _ = earlier_files(files, before)
+    return replace(result, warnings=(*result.warnings, *others, *_without_stale(result, stale)))
+
+
+def _others_left(files: RunFiles, before: Mapping[str, tuple[int, int]]) -> list[Message]:
+    """Name the files of horizons and bodies of an earlier run that are not part of this one."""
+    _, others = earlier_files(files, before)
+    text = message(
+        "project.earlier-files-left",
+        "The folder also holds files of an earlier run, which are not part of this one: {names}",
+        names=", ".join(others),
+    )
+    return [text] if others else []
+
+
+def _without_stale(result: RunResult, stale: Sequence[str]) -> list[Message]:
+    """Remove what contradicts the new report, and name it; without a new report nothing is removed."""
+    gone = removed(result.out, stale) if result.report is not None else []
+    left = [name for name in stale if name not in gone]
+    texts = (
+        message(
+            "project.earlier-files-removed",
+            "Files of an earlier run that this one does not write were removed: {names}",
+            names=", ".join(gone),
+        ),
+        message(
+            "project.earlier-files-stale",
+            "Files of an earlier run that this one did not renew: {names}",
+            names=", ".join(left),
+        ),
+    )
+    return [text for text, names in zip(texts, (gone, left), strict=True) if names]
 
 
 def _without_dips(site: Site, fits: SiteFit) -> list[Message]:
@@ -193,8 +230,8 @@ def _corners(site: Site, fits: SiteFit) -> list[NDArray[np.float64]]:
 
 
 def _write_results(
-    site: Site, fits: SiteFit, out: Path, hands: Crew, progress: Progress | None, language: Language, date: str,
-    pdf: bool, bands: bool, bodies: Sequence[str], where: Where, signed: Signed,
+    site: Site, fits: SiteFit, files: RunFiles, hands: Crew, progress: Progress | None, language: Language, date: str,
+    pdf: bool, bands: bool, where: Where, signed: Signed, notes: Sequence[Message],
 ) -> RunResult:  # fmt: skip
     """Examine, draw and write what was fitted."""
     from geofit.report.gather import accuracy_report
@@ -206,12 +243,12 @@ def _write_results(
     ordered, unordered = _orders(site, fits)
     orders = ordered or ()
     made, whole = _examined(
-        site, fits, orders, out, hands, progress, language, bands, sections, failures, where, signed
+        site, fits, orders, files, hands, progress, language, bands, sections, failures, where, signed
     )
     results = [one.result for one in made]
     images = {name: picture for one in made for name, picture in one.images.items()}
     warnings += [text for one in made for text in one.warnings]
-    parts = _bodies(site, bodies, fits, out, hands, progress, language, failures, signed)
+    parts = _bodies(site, fits, files, hands, progress, language, failures, signed)
     images |= {name: picture for part in parts for name, picture in part.images.items()}
     report: AccuracyReport | None = None
     if results:
@@ -226,24 +263,29 @@ def _write_results(
         for section in drawn:
             images |= section()
         for data in whole.images.values():
-            with replacing(out / "site.png") as picture:
+            with replacing(files.folder / "site.png") as picture:
                 picture.write_bytes(data)
         forms: tuple[Form, ...] = ("html", "json", "pdf") if pdf else ("html", "json")
         chapters = [part.chapter for part in parts]
-        _write_report(report, whole, images, out, language, font, forms, chapters)
+        _write_report(report, whole, images, files.folder, language, font, forms, chapters, notes)
         warnings = [text for text in (font, *warnings, unordered, whole.missing) if text]
     return RunResult(
-        out, tuple(results), failures, tuple(warnings), orders, fits.cuts, fits.contradictions, report, tuple(parts)
-    )
+        files.folder, tuple(results), failures, tuple(warnings), orders, fits.cuts, fits.contradictions, report,
+        tuple(parts),
+    )  # fmt: skip
 
 
 def _bodies(
-    site: Site, codes: Sequence[str], fits: SiteFit, out: Path, hands: Crew, progress: Progress | None,
-    language: Language, failures: dict[str, Message], signed: Signed,
+    site: Site, fits: SiteFit, files: RunFiles, hands: Crew, progress: Progress | None, language: Language,
+    failures: dict[str, Message], signed: Signed,
 ) -> list[BodyPart]:  # fmt: skip
     """Fit the bodies of a report and write their files; note those that failed."""
+    codes = list(files.bodies)
     surfaces = {name: surface.with_(model=None) for name, surface in fits.surfaces.items()}
-    tasks = [partial(write_body_part, site, code, surfaces, out, language.code, signed) for code in codes]
+    tasks = [
+        partial(write_body_part, site, code, name, files.stem(name), surfaces, language.code, signed)
+        for code, name in files.bodies.items()
+    ]
     found: dict[int, BodyPart] = {}
     for i, made in hands.do(tasks, _within(progress, 0.9, 0.9), "bodies"):
         if isinstance(made, Message):
@@ -254,19 +296,18 @@ def _bodies(
 
 
 def _examined(
-    site: Site, fits: SiteFit, orders: Sequence[Order], out: Path, hands: Crew, progress: Progress | None,
+    site: Site, fits: SiteFit, orders: Sequence[Order], files: RunFiles, hands: Crew, progress: Progress | None,
     language: Language, bands: bool, sections: Sequence[Section], failures: dict[str, Message], where: Where,
     signed: Signed,
 ) -> tuple[list[Made], Pictures]:  # fmt: skip
     """Examine every surface and write its files, and draw them together, side by side; note those that failed."""
     from geofit.report.pictures import Pictures, draw_site
 
-    stems = file_stems(fits.surfaces)
     # What takes longest begins first: a folded surface is fitted anew without each of its sections.
     order = sorted(fits.surfaces, key=lambda name: (fits.surfaces[name].frame != "sections", -_size(fits, name)))
     tasks: list[Callable[[], Made | Message | Pictures]] = [
         partial(
-            write_horizon, fits.surfaces[name], site, out / stems[name], language.code, fits.seconds[name], bands,
+            write_horizon, fits.surfaces[name], site, files.stem(name), language.code, fits.seconds[name], bands,
             sections, where, signed, fits.horizon[name], _checks(orders, fits.horizon[name]),
         )
         for name in order
@@ -448,13 +489,14 @@ def _write_report(
     warning: Message,
     forms: Sequence[Form],
     bodies: Sequence[Chapter] = (),
+    notes: Sequence[Message] = (),
 ) -> None:
     """Write the report in its forms; ``whole`` shows the site, ``images`` its horizons."""
     from geofit.report.chapters import document
     from geofit.report.html import write_html
     from geofit.report.schema import report_document, write_json
 
-    pages = document(report, language, missing_picture=whole.missing, warning=warning, bodies=bodies)
+    pages = document(report, language, missing_picture=whole.missing, warning=warning, bodies=bodies, notes=notes)
     pictures = {**images, **whole.images}
     if "json" in forms:
         write_json(report_document(report), out / "report.json")

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from refusals import refused
 from surfaces import ORIGIN, fold, height_field, horizon, nine, split
 
+import geofit
 from geofit.cad.faces import edges_with_faces, to_geom
 from geofit.cad.read_back import read_back, self_intersects
 from geofit.cad.step import read_shapes, read_step, write_step
@@ -369,3 +371,22 @@ def test_the_witness_hides_no_point_that_is_missed(tmp_path):
     back = write_step({"a": surface.with_(points=off)}, tmp_path / "a.step")["a"]
     assert back.core_max_abs > 1e-4
     assert {check.name: check for check in back.checks}["read-back core"].passed is False
+
+
+@pytest.mark.parametrize("name", ["强风化下限" * 20, "强a'𠀀" * 30, "a'" * 60, "ab cd" * 60])
+def test_a_name_across_lines_is_whole(name, tmp_path):
+    """OpenCASCADE breaks a string after 72 bytes, in the middle of a character or of a doubled quotation mark."""
+    from geofit.io.surface_files import read_surfaces
+
+    surface = geofit.fit_horizon(geofit.PointSet([[0, 0, 1.0], [9, 0, 2.0], [0, 9, 3.0], [9, 9, 4.0]]), name="a")
+    write_step({name: surface}, tmp_path / "a.step")
+    assert list(read_surfaces(tmp_path / "a.step")) == [name]
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="names of 255 bytes")
+def test_the_reason_of_the_system_is_told_not_a_full_disk(tmp_path):
+    surface = geofit.fit_horizon(geofit.PointSet([[0, 0, 1.0], [9, 0, 2.0], [0, 9, 3.0], [9, 9, 4.0]]), name="a")
+    with pytest.raises(InputError, match=r"name too long.*Choose another name"):
+        write_step({"a": surface}, tmp_path / f"{'a' * 260}.step")
+    # As long as the system takes: names of temporary files are not longer.
+    write_step({"a": surface}, tmp_path / f"{'a' * 250}.step")

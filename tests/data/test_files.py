@@ -115,3 +115,16 @@ def test_toml_that_is_nested_deep_is_refused(tmp_path, name):
     (tmp_path / name).write_text("a = " + "[" * 30_000 + "]" * 30_000)
     with pytest.raises(InputError, match="nested too deeply"):
         (read_site if name == "site.toml" else load_mappings)(tmp_path / name)
+
+
+@posix
+def test_a_link_stays_a_link_to_what_was_replaced(tmp_path):
+    real, link = tmp_path / "real.txt", tmp_path / "folder" / "link.txt"
+    link.parent.mkdir()
+    real.write_text("old")
+    link.symlink_to(real)
+    with replacing(link) as part:
+        part.write_text("new")
+    assert link.is_symlink()
+    assert real.read_text() == "new"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["folder", "real.txt"]

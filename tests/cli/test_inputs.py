@@ -1,0 +1,117 @@
+"""No command replaces a file that it reads; an import replaces a site file only where it is told to."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geofit import PointSet, fit_horizon
+from geofit.cad.step import write_step
+from geofit.cli.main import main
+from geofit.data.errors import InputError
+from geofit.data.files import inputs_kept, note_input, replacing
+
+
+def run(monkeypatch, capsys, *arguments) -> tuple[int, str]:
+    """Run the command in this process; return exit code and stderr."""
+    monkeypatch.setattr(sys, "argv", ["geofit", *map(str, arguments)])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    return int(stop.value.code or 0), capsys.readouterr().err
+
+
+def points() -> np.ndarray:
+    plan = np.random.default_rng(1).uniform(0, 100, (20, 2))
+    return np.column_stack([plan + np.array([500_000.0, 3_100_000.0]), 0.1 * plan[:, 0] + np.sin(plan[:, 1] / 20)])
+
+
+def table(path: Path) -> Path:
+    path.parent.mkdir(exist_ok=True)
+    rows = [f"B{k},{x:.2f},{y:.2f},{z:.3f},T2" for k, (x, y, z) in enumerate(points())]
+    path.write_text("\n".join(["hole,x,y,z,horizon", *rows]) + "\n", encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("name", ["T2_residuals.csv", "import_issues.csv"])
+def test_a_fit_refuses_to_replace_its_points(name, tmp_path, monkeypatch, capsys):
+    source = table(tmp_path / name)
+    before = source.read_bytes()
+    code, err = run(monkeypatch, capsys, "fit", source, "--out", tmp_path)
+    assert (code, source.read_bytes()) == (2, before)
+    assert "input of this run" in err
+    assert "Name another file or folder" in err
+    assert "PASS at the data" not in err, "it is refused before anything is fitted"
+
+
+def test_a_file_that_a_site_names_is_an_input_as_well(tmp_path, monkeypatch, capsys):
+    source = table(tmp_path / "out" / "T2_residuals.csv")
+    before = source.read_bytes()
+    (tmp_path / "site.toml").write_text('[site]\nname = "s"\n[[picks]]\nfile = "out/T2_residuals.csv"\n')
+    code, err = run(monkeypatch, capsys, "fit", tmp_path / "site.toml", "--out", tmp_path / "out")
+    assert (code, source.read_bytes()) == (2, before)
+    assert "T2_residuals.csv: The file is an input of this run" in err
+
+
+@pytest.mark.parametrize("way", ["itself", "link", "hard link"])
+def test_an_export_refuses_to_replace_its_surface(way, tmp_path, monkeypatch, capsys):
+    source, out = tmp_path / "x.step", tmp_path / ("x.step" if way == "itself" else "y.step")
+    write_step({"a": fit_horizon(PointSet(points()), name="a")}, source)
+    if way != "itself":
+        try:
+            (os.link if way == "hard link" else os.symlink)(source, out)
+        except OSError:
+            pytest.skip("no links here")
+    before = source.read_bytes()
+    code, err = run(monkeypatch, capsys, "export", source, "--to", "step", "--out", out)
+    assert (code, source.read_bytes()) == (2, before)
+    assert "input of this run" in err
+
+
+def test_an_import_refuses_its_tables_and_a_site_file_that_is_there(tmp_path, monkeypatch, capsys):
+    source = table(tmp_path / "picks.csv")
+    before = source.read_bytes()
+    for force in ((), ("--force",)):
+        code, err = run(monkeypatch, capsys, "import", source, "--site", source, *force)
+        assert (code, source.read_bytes()) == (2, before)
+        assert "input of this run" in err
+    site = tmp_path / "site.toml"
+    site.write_text("# by hand\n")
+    code, err = run(monkeypatch, capsys, "import", source, "--site", site)
+    assert (code, site.read_text()) == (2, "# by hand\n")
+    assert "--force" in err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["picks.csv", "site.toml"]
+    code, err = run(monkeypatch, capsys, "import", source, "--site", site, "--force")
+    assert code == 0, err
+    assert "by hand" not in site.read_text("utf-8")
+    # The mapping is to be corrected by hand: it is kept like the site file, and is an input where it is read.
+    site.unlink()
+    assert run(monkeypatch, capsys, "import", source, "--site", site)[0] == 2
+    mapping = tmp_path / "site_mapping.toml"
+    before = mapping.read_bytes()
+    assert run(monkeypatch, capsys, "import", source, "--site", site, "--force", "--mapping", mapping)[0] == 2
+    assert mapping.read_bytes() == before
+    shutil.copy(mapping, tmp_path / "saved.toml")
+    code, err = run(monkeypatch, capsys, "import", source, "--site", site, "--force", "--mapping", "saved.toml")
+    assert code == 2, "there is no such file here"
+    saved = tmp_path / "saved.toml"
+    code, err = run(monkeypatch, capsys, "import", source, "--site", site, "--force", "--mapping", saved)
+    assert code == 0, err
+
+
+def test_outside_a_run_a_file_that_was_read_may_be_saved(tmp_path):
+    file, other = table(tmp_path / "a.csv"), table(tmp_path / "b.csv")
+    note_input(file)
+    with replacing(file) as part:
+        part.write_text("saved")
+    with inputs_kept([file]):
+        note_input(other)
+        for one in (file, other):
+            with pytest.raises(InputError) as caught, replacing(one) as part:
+                part.write_text("lost")
+            assert caught.value.code == "data.output-is-input"
+    assert file.read_text() == "saved"
