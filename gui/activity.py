@@ -88,6 +88,11 @@ class Activity(QObject):
         if self._task is not None:
             self._task.cancel()
 
+    def fail(self, title: str, error: Exception) -> None:
+        """Log a failure, and report it by the signal."""
+        _LOG.error(message("gui.log-task-error", "{task}: {error}", task=title, error=shown_error(error)))
+        self.failed.emit(title, error)
+
     def _next(self) -> None:
         while self._waiting:
             job = self._waiting.popleft()
@@ -101,7 +106,7 @@ class Activity(QObject):
                 *work[1],
                 title=job.title,
                 on_done=job.on_done,
-                on_failed=job.on_failed or partial(self._fail, job.title),
+                on_failed=job.on_failed or partial(self.fail, job.title),
                 on_progress=self.progressed.emit,
                 on_cancelled=partial(_LOG.info, message("gui.log-stopped", "Stopped: {task}", task=job.title)),
             )
@@ -114,7 +119,3 @@ class Activity(QObject):
     def _after(self) -> None:
         self._task = None
         self._next()
-
-    def _fail(self, title: str, error: Exception) -> None:
-        _LOG.error(message("gui.log-task-error", "{task}: {error}", task=title, error=shown_error(error)))
-        self.failed.emit(title, error)

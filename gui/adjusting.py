@@ -92,7 +92,7 @@ class Adjusting(QObject):
         """Say how the control point is dragged."""
         if self._preview is not None:
             self.reported.emit(
-                self.tr("Drag: in the plane of the view. Shift: along the normal. X, Y, Z: one axis. Figures: metres.")
+                self.tr("Drag: in the plane of the view. Shift: along the normal. X, Y, Z: one axis. Digits: metres.")
             )
 
     def _follow(self) -> None:
@@ -113,7 +113,7 @@ class Adjusting(QObject):
         )
         if any(aside):
             east, north, up = (f"{value:+.2f} m".replace("-", "−") for value in aside)
-            words = self.tr("aside E {east}, N {north}, Z {up}").format(east=east, north=north, up=up)
+            words = self.tr("sideways E {east}, N {north}, Z {up}").format(east=east, north=north, up=up)
             figures = f"{words}\n{figures}"
         self._view.control_move.move(preview.vector(dz, aside), in_lengths(figures) if control.ready else "")
 

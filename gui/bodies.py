@@ -22,6 +22,7 @@ from geofit.gui.dialogs.step_fields import BodyStepDialog
 from geofit.gui.fitting import Fitting
 from geofit.gui.panels.body_source import MESH, OTHER, OUTLINES, POINTS
 from geofit.gui.preferences import Preferences
+from geofit.gui.save_file import ask_save_file
 from geofit.gui.session import Session
 from geofit.gui.showing import Showing
 from geofit.gui.translate import shown_error, translated
@@ -112,19 +113,16 @@ class Bodies(QObject):
         if result is None:
             return
         blocks = BLOCK_ENDINGS if result.fitted is not None else ()
-        words = {".step": "STEP", ".csv": self.tr("Block model"), ".omf": self.tr("Block model"),
+        words = {".csv": self.tr("Block model"), ".omf": self.tr("Block model"),
                  ".geoh5": self.tr("Block model"), ".vti": self.tr("Field, VTK")}  # fmt: skip
-        endings = (".step", *TRIANGLE_ENDINGS, *blocks)
-        filters = {f"{words.get(end, self.tr('Triangles'))} (*{end})": end for end in endings}
+        others = [f"{words.get(end, self.tr('Triangles'))} (*{end})" for end in (*TRIANGLE_ENDINGS, *blocks)]
         folder = self._document.folder or Path(self._preferences.folder)
         start = folder / file_stems([name])[name]
-        path, chosen = QFileDialog.getSaveFileName(
-            self._window, self.tr("Export body {name}").format(name=name), str(start), ";;".join(filters)
-        )
-        if path:
-            target = Path(path)
-            target = target if target.suffix else target.with_suffix(filters[chosen])
-            if target.suffix.casefold() not in (".step", ".stp"):
+        title, kinds = self.tr("Export body {name}").format(name=name), ";;".join(["STEP (*.step *.stp)", *others])
+        chosen = ask_save_file(self._window, title, start, kinds)
+        if chosen is not None:
+            target = chosen[0]
+            if target.suffix not in (".step", ".stp"):
                 self.export(name, target)
                 return
             dialog = BodyStepDialog(name, self._document.site, self._window)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QStandardPaths, Signal
 from PySide6.QtWidgets import QDialog, QFileDialog, QMessageBox, QWidget
 
-from geofit.data.messages import Untranslated, message, plural_message
+from geofit.data.messages import Message, Untranslated, message, plural_message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
@@ -19,14 +19,18 @@ from geofit.gui.activity import Activity
 from geofit.gui.dialogs.recovery import RecoveryDialog
 from geofit.gui.fitting import Fitting
 from geofit.gui.preferences import Preferences
+from geofit.gui.save_file import ask_save_file
 from geofit.gui.session import Session
 from geofit.gui.translate import translated
+from geofit.io.project import ENDING, is_project
+from geofit.io.project_files import sha256_of
 from geofit.io.survey_kinds import SURVEY_ENDINGS, is_survey
 from geofit.project.body_saving import saved_body
 from geofit.project.journal import Unfinished, unfinished
 from geofit.project.provenance import Provenance
 from geofit.project.saving import (
     Opened,
+    SiteFileGoneError,
     Written,
     earlier_data,
     read_again,
@@ -41,9 +45,8 @@ if TYPE_CHECKING:
 __all__ = ["Files"]
 
 _LOG = logging.getLogger(__name__)
-PROJECT = ".geofit"
 SURVEYS = " ".join(f"*{ending}" for ending in SURVEY_ENDINGS)
-OPENED = f"*{PROJECT} *.toml {SURVEYS}"
+OPENED = f"*{ENDING} *.toml {SURVEYS}"
 
 
 class Files(QObject):
@@ -51,10 +54,12 @@ class Files(QObject):
 
     ``reported(text)`` says in the status bar what was done; ``built(name, rule, order)`` comes for each horizon that
     was built while a site was imported, once it is open; ``survey_chosen(path)``: a survey of passages is to be opened,
-    which leaves the site as it is.
+    which leaves the site as it is; ``work_lost(messages)``: what of the work that was opened did not survive
+    that files changed meanwhile; nothing, as a rule.
     """
 
     reported = Signal(str)
+    work_lost = Signal(object)
     built = Signal(str, object, object)
     survey_chosen = Signal(object)
 
@@ -132,18 +137,17 @@ class Files(QObject):
         site_file = self._document.site_file
         if site_file is None:
             return
-        proposed = self._document.project_file or site_file.with_name(f"{site_file.parent.name}{PROJECT}")
-        name, _ = QFileDialog.getSaveFileName(
-            self._window, self.tr("Save the project"), str(proposed), self.tr("geofit projects (*.geofit)")
+        proposed = self._document.project_file or site_file.with_name(f"{site_file.parent.name}{ENDING}")
+        chosen = ask_save_file(
+            self._window, self.tr("Save the project"), proposed, self.tr("geofit projects (*.geofit)")
         )
-        if name:
-            path = Path(name)
-            self.save_to(path if path.suffix == PROJECT else path.with_name(path.name + PROJECT), then)
+        if chosen is not None:
+            self.save_to(chosen[0], then)
 
     def save_to(self, path: Path, then: Callable[[], object] | None = None) -> None:
         """Save the project into a file; ``then`` as in :meth:`save`."""
         document = self._document
-        if document.site_file is None:
+        if document.site_file is None or not self._may_replace(path, then):
             return
         state, surfaces = document.state, {}
         for name, provenance in state.provenances.items():
@@ -153,12 +157,42 @@ class Files(QObject):
                 surfaces[provenance] = surface.with_(model=None)
         same = path == document.project_file
         title = self.tr("Save {name}").format(name=path.name)
-        # Of the site its label and the hashes of its files are enough.
-        site = Site(document.site.name, {}, crs=document.site.crs, inputs=document.site.inputs)
+        # Of the site its label, the hashes of its files and the points of excluded rows are enough.
+        read = document.read
+        horizons = {whole: read.horizons[whole] for name, rows in state.excluded.items() if rows
+                    and (whole := document.whole(name)) in read.horizons}  # fmt: skip
+        site = Site(read.name, horizons, crs=read.crs, inputs=read.inputs)
         data = {name: earlier for name in earlier_data(state) if (earlier := document.data(name)) is not None}
         bodies = {name: saved_body(result) for name, result in document.made_bodies().items()}
         work = (state, site, document.site_file, path, surfaces, same, data, bodies)
         self._activity.do(title, save_state, *work, on_done=partial(self._saved, then), in_process=bool(surfaces))
+
+    def _may_replace(self, path: Path, then: Callable[[], object] | None) -> bool:
+        """Whether a file may be replaced; where another window has saved the project since, that is asked.
+
+        Another name is asked for, and the project saved under it, if the user wants that.
+        """
+        document = self._document
+        if path != document.project_file or not document.project_digest:
+            return True
+        try:
+            if sha256_of(path) == document.project_digest:
+                return True
+        except OSError:
+            return True  # it is gone, or writing it states why it cannot be used
+        box = QMessageBox(self._window)
+        box.setIcon(QMessageBox.Icon.Warning)
+        box.setWindowTitle("geofit")
+        box.setText(self.tr("{name} has been saved by another window since it was opened here.").format(name=path.name))
+        box.setInformativeText(self.tr("If you overwrite it, what was saved there will be lost."))
+        box.addButton(QMessageBox.StandardButton.Yes).setText(self.tr("&Overwrite"))
+        box.addButton(QMessageBox.StandardButton.No).setText(self.tr("Save under &another name…"))
+        box.addButton(QMessageBox.StandardButton.Cancel)
+        box.setDefaultButton(QMessageBox.StandardButton.No)
+        answer = box.exec()
+        if answer == QMessageBox.StandardButton.No:
+            self.save_as(then)
+        return answer == QMessageBox.StandardButton.Yes
 
     def leave(self, then: Callable[[], object]) -> None:
         """Do what ends the document, after asking whether to save; not at all if the user wants to stay."""
@@ -168,8 +202,8 @@ class Files(QObject):
         box = QMessageBox(self._window)
         box.setIcon(QMessageBox.Icon.Question)
         box.setWindowTitle("geofit")
-        box.setText(self.tr("Save the changes of {name}?").format(name=self._document.state.name))
-        box.setInformativeText(self.tr("What is not saved is lost."))
+        box.setText(self.tr("Save the changes to {name}?").format(name=self._document.state.name))
+        box.setInformativeText(self.tr("Unsaved changes will be lost."))
         box.setStandardButtons(
             QMessageBox.StandardButton.Save | QMessageBox.StandardButton.Discard | QMessageBox.StandardButton.Cancel
         )
@@ -204,20 +238,52 @@ class Files(QObject):
         work = (session.site_file, session.final.added)
         self._activity.do(title, read_again, *work, on_done=lambda site: self._recovered(session, site))
 
-    def _open(self, path: Path, built: Sequence[BuiltHorizon] = ()) -> None:
-        """Open a site or a project; horizons that were built while it was imported are steps that can be undone."""
+    def _open(self, path: Path, built: Sequence[BuiltHorizon] = (), site_file: Path | None = None) -> None:
+        """Open a site or a project; horizons that were built while it was imported are steps that can be undone.
+
+        ``site_file`` is where the site of a project is now, if not where the project names it.
+        """
 
         def opened(found: Site | Opened) -> None:
             self._opened(path, found)
             for one in built:
                 self.built.emit(one.name, one.rule, one.order)
 
+        def failed(error: Exception) -> None:
+            if isinstance(error, SiteFileGoneError):
+                self._ask_site_file(path, error)
+            else:
+                self._activity.fail(title, error)
+
         self._preferences.folder = str(path.parent)
         # What runs is for the site that is left.
         self._activity.cancel()
         title = self.tr("Open {name}").format(name=path.name)
-        read = read_project if path.suffix == PROJECT else _read_site
-        self._activity.do(title, read, path, on_done=opened)
+        read = partial(read_project, site_file=site_file) if is_project(path) else _read_site
+        self._activity.do(title, read, path, on_done=opened, on_failed=failed)
+
+    def _ask_site_file(self, project: Path, error: SiteFileGoneError) -> None:
+        """Ask where the site file of a project is now, and open the project with it."""
+        box = QMessageBox(self._window)
+        box.setIcon(QMessageBox.Icon.Question)
+        box.setWindowTitle("geofit")
+        box.setText(
+            self.tr("The site file of {name} is not there any more: {file}").format(
+                name=project.name, file=error.file or ""
+            )
+        )
+        box.setInformativeText(self.tr("If it was moved, show where it is now."))
+        box.setStandardButtons(QMessageBox.StandardButton.Open | QMessageBox.StandardButton.Cancel)
+        if box.exec() != QMessageBox.StandardButton.Open:
+            return
+        name, _ = QFileDialog.getOpenFileName(
+            self._window,
+            self.tr("Site file of {name}").format(name=project.name),
+            str(project.parent),
+            ";;".join((self.tr("Site files (*.toml)"), self.tr("All files (*)"))),
+        )
+        if name:
+            self._open(project, site_file=Path(name))
 
     def _open_sample(self, place: Path) -> None:
         self._activity.cancel()
@@ -229,12 +295,21 @@ class Files(QObject):
         self._session.begin(Site("", {}), None)
 
     def _recovered(self, session: Unfinished, site: Site) -> None:
-        count = self._session.resume(session, site)
+        count, lost = self._session.resume(session, site)
         self._fitting.make_missing()
         back = plural_message(
             "gui.steps-brought-back", "Brought back, {count} step.", "Brought back, {count} steps.", count=count
         )
-        self.reported.emit(translated(back))
+        self._report(back, lost)
+        self._list_lost()
+
+    def _report(self, text: Message, lost: tuple[Message, ...]) -> None:
+        """Say in the status bar what was done, with the first of what is lost; all of it is shown and logged."""
+        self.reported.emit(" · ".join(translated(one) for one in (text, *lost[:1])))
+        self.work_lost.emit(lost)
+
+    def _list_lost(self) -> None:
+        """Log the surfaces that are not available and cannot be made again."""
         for name in self._document.lost():
             _LOG.warning(
                 message(
@@ -247,12 +322,22 @@ class Files(QObject):
     def _opened(self, path: Path, found: Site | Opened) -> None:
         self._preferences.opened(path)
         self._preferences.folder = str(path.resolve().parent)
+        lost: tuple[Message, ...] = ()
         if isinstance(found, Site):
             self._session.begin(found, path)
             site = found
         else:
-            site = found.site
-            self._session.begin(site, found.site_file, found.state, path, found.data)
+            site, lost = found.site, found.lost
+            self._session.begin(site, found.site_file, found.state, path, found.data, found.saved, found.digest)
+            if found.moved:
+                _LOG.warning(
+                    plural_message(
+                        "gui.log-exclusions-moved",
+                        "{count} excluded point is on another line of its file now; it stays excluded.",
+                        "{count} excluded points are on other lines of their files now; they stay excluded.",
+                        count=found.moved,
+                    )
+                )
             for made_from, body in found.bodies.items():
                 self._document.put_body(made_from, body)
             for file, what in found.changed.items():
@@ -289,7 +374,7 @@ class Files(QObject):
             rows=rows,
             warnings=warnings,
         )
-        self.reported.emit(translated(opened))
+        self._report(opened, lost)
         _LOG.info(
             message(
                 "gui.log-opened",
@@ -307,13 +392,23 @@ class Files(QObject):
             self._document.put(provenance, surface)
         self._fitting.complete(tuple(surfaces))
         self._fitting.make_missing()
+        self._list_lost()
 
     def _saved(self, then: Callable[[], object] | None, written: Written) -> None:
-        self._session.saved(written.path, written.state)
+        self._session.saved(written.path, written.state, written.digest)
         self._preferences.opened(written.path)
         self._preferences.folder = str(written.path.resolve().parent)
         self.reported.emit(self.tr("Saved {name}.").format(name=written.path.resolve()))
         _LOG.info(message("gui.log-saved", "Saved {path}", path=str(written.path)))
+        site_file = self._document.site_file
+        if site_file is not None and not site_file.is_file():
+            _LOG.warning(
+                message(
+                    "gui.log-site-file-gone",
+                    "The site file {file} is not there any more: the project cannot be opened without it.",
+                    file=Untranslated(str(site_file)),
+                )
+            )
         if then is not None:
             # What was fitted meanwhile is not in the file: that is asked again.
             self.leave(then)

@@ -92,7 +92,7 @@ class Fitting(QObject):
 
     def _part(self, whole: str) -> None:
         """Part a horizon at its faults, then fit its blocks."""
-        title = self.tr("Part {name} at its faults").format(name=whole)
+        title = self.tr("Split {name} at its faults").format(name=whole)
         self._activity.prepare(title, lambda: self._part_work(whole), on_done=self._split_done, in_process=True)
 
     def _part_work(self, whole: str) -> Work:

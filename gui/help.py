@@ -37,7 +37,7 @@ class Help(QObject):
             QDesktopServices.openUrl(QUrl.fromLocalFile(str(TUTORIAL)))
             return
         self._box(
-            self.tr("The way through geofit"),
+            self.tr("The geofit workflow"),
             self.tr(
                 "<ol><li>Open the sample site, a project, or drop your tables on the "
                 "window.</li><li>Choose a horizon in the project tree; its plan shows the dense core "

@@ -10,7 +10,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QWidget
 
-from geofit.data.messages import message, plural_message
+from geofit.data.messages import Message, message, plural_message
 from geofit.data.site import Site
 from geofit.gui.activity import Activity, Work
 from geofit.gui.fitting import Fitting
@@ -22,7 +22,7 @@ from geofit.gui.workspace import Workspace
 from geofit.io.contact_rules import ContactRule
 from geofit.project.adding import Added, add_files
 from geofit.project.comparing import made_comparison
-from geofit.project.data_change import DataChange, arrivals, change_of_data, changed_files
+from geofit.project.data_change import arrivals, change_of_data, changed_files
 from geofit.project.horizon_builder import RulePicks, horizon_table
 from geofit.project.provenance import Provenance
 from geofit.project.saving import read_again
@@ -51,7 +51,11 @@ class Living(QObject):
         self._panels, self._bar, self._window = panels, bar, window
         self._document = session.document
         self._stamps: dict[str, _Stamp] = {}
-        self._last: DataChange | None = None
+        #: What of the work did not survive the last change of the data, and the data since.
+        self._lost: tuple[Message, ...] = ()
+        self._lost_since = ""
+        #: Whether the panel comes to the front when it is shown next.
+        self._revealing = False
         bar.accepted.connect(self.reload)
         panels.changes.compare_requested.connect(self._compare)
         self._document.site_changed.connect(self._on_site)
@@ -65,7 +69,15 @@ class Living(QObject):
 
     def take_over(self, other: Living) -> None:
         """Go on with what another window knows of the last change of the data."""
-        self._last = other._last
+        self._lost, self._lost_since = other._lost, other._lost_since
+
+    def hear_lost(self, lost: tuple[Message, ...]) -> None:
+        """Keep, log and show what of the work did not survive that files changed while it was not open, if anything."""
+        self._lost, self._lost_since = lost, self._document.state.data
+        for text in lost:
+            _LOG.warning(text)
+        # The panels of a site that was just opened are not there yet.
+        self._revealing = bool(lost)
 
     def ask_files(self) -> None:
         """Ask for files, and add them to the site."""
@@ -131,7 +143,7 @@ class Living(QObject):
         document = self._document
         if document.site_file is None or self._activity.busy:
             return
-        folder, stamps = document.site_file.resolve().parent, self._stamped()
+        folder, stamps = document.site_file.parent, self._stamped()
         if stamps == self._stamps:
             return
         self._stamps = stamps
@@ -156,14 +168,14 @@ class Living(QObject):
         document = self._document
         if document.site_file is None:
             return {}
-        folder = document.site_file.resolve().parent
+        folder = document.site_file.parent
         return {name: _stamp(folder / name) for name in document.read.inputs}
 
     def _on_site(self) -> None:
         self._bar.hide()
         self._stamps = self._stamped()
-        if self._last is not None and self._document.state.data != self._last.command.data:
-            self._last = None
+        if self._document.state.data != self._lost_since:
+            self._lost = ()
 
     def _added(self, added: Added) -> None:
         for issue in added.issues:
@@ -186,10 +198,11 @@ class Living(QObject):
             self.reported.emit(self.tr("The data are the same: nothing has changed."))
             return
         document.know(site)
-        self._last = change
+        self._lost, self._lost_since = change.lost, change.command.data
         self._fitting.push(change.command)
-        for text in (*(one.text for one in change.arrivals if one.any), *change.lost):
-            _LOG.info(text)
+        for one in change.arrivals:
+            if one.any:
+                _LOG.info(one.text)
         for text in change.lost:
             _LOG.warning(text)
         carried = plural_message(
@@ -203,16 +216,20 @@ class Living(QObject):
 
     def show(self) -> None:
         """Show how the chosen horizon moved, or what there is to say before that is known."""
+        if self._revealing:
+            self._revealing = False
+            self._panels.reveal("changes")
         document, panel, name = self._document, self._panels.changes, self._document.selection.horizon
         earlier = None if name is None else document.state.earlier.get(name)
         before = None if earlier is None else document.data(earlier.data)
         if name is None or before is None or earlier is None:
-            panel.show_nothing(lost=() if self._last is None else self._last.lost)
+            panel.show_nothing(self._lost)
             return
         whole = document.whole(name)
         came = arrivals(whole, before.horizons[whole], document.read.horizons[whole])
-        lost = () if self._last is None else self._last.lost
-        panel.show_state(name, came, lost, document.comparison(name), waiting=document.compared_pair(name) is None)
+        panel.show_state(
+            name, came, self._lost, document.comparison(name), waiting=document.compared_pair(name) is None
+        )
 
     def _compare(self, name: str) -> None:
         if self._document.compared_pair(name) is not None and self._document.comparison(name) is None:

@@ -84,6 +84,7 @@ class MainWindow(QMainWindow):
         self.files = Files(session, self.activity, self.fitting, preferences, self)
         self.living = Living(session, self.activity, self.fitting, self.panels, self.panels.offer, self)
         self.files.built.connect(self.living.build)
+        self.files.work_lost.connect(self.living.hear_lost)
         self.showing.also.append(self.living.show)
         self.selecting = Selecting(document, self.panels, self.showing, self)
         self.dips = Dips(document, self.panels, self.showing, self)

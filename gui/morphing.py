@@ -19,6 +19,7 @@ from geofit.gui.dialogs.horizon_bodies import HorizonBodies
 from geofit.gui.filming import Filming
 from geofit.gui.fitting import Fitting
 from geofit.gui.lengths import in_lengths
+from geofit.gui.save_file import ask_save_file
 from geofit.gui.translate import translated
 from geofit.gui.worker import Task, run
 from geofit.gui.workspace import Workspace
@@ -177,13 +178,13 @@ class Morphing(QObject):
 
     def ask_film(self) -> None:
         """Ask for a file, and film the way as the view shows it."""
-        path, chosen = QFileDialog.getSaveFileName(
+        chosen = ask_save_file(
             self._window, self.tr("Film of the view"),
-            str((self._document.folder or Path()) / f"{file_stems([self._proposed()])[self._proposed()]}.gif"),
+            (self._document.folder or Path()) / f"{file_stems([self._proposed()])[self._proposed()]}.gif",
             self.tr("GIF (*.gif);;MP4, by the program ffmpeg (*.mp4)"),
         )  # fmt: skip
-        if path:
-            self.film(Path(path) if Path(path).suffix else Path(f"{path}.{'mp4' if 'mp4' in chosen else 'gif'}"))
+        if chosen is not None:
+            self.film(chosen[0])
 
     def film(self, path: Path, pictures: int = PICTURES) -> None:
         """Write a film of the way by the view's camera; the slider stays where it is."""

@@ -83,7 +83,7 @@ class Ordering(QObject):
         """Ask how thick the rock between two horizons is at least, and separate them."""
         minimum, given = QInputDialog.getDouble(
             self._window,
-            self.tr("Push horizons apart"),
+            self.tr("Separate horizons"),
             self.tr("Least thickness between a horizon and the next, metres"),
             0.0, 0.0, 1000.0, 2,
         )  # fmt: skip
@@ -116,7 +116,7 @@ class Ordering(QObject):
             self.refused.emit(DocumentError(text))
             return
         self._activity.do(
-            self.tr("Push horizons apart"),
+            self.tr("Separate horizons"),
             separated,
             surfaces,
             minimum,
@@ -159,7 +159,7 @@ class Ordering(QObject):
                 DocumentError(
                     message(
                         "gui.surface-changed-meanwhile",
-                        "A surface has changed since. Separate the horizons again.",
+                        "A surface has changed since the horizons were separated. Separate them again.",
                     )
                 )
             )
@@ -177,7 +177,7 @@ class Ordering(QObject):
         self._fitting.push(command)
         moved = ", ".join(f"{name} {by:.2f} m" for name, by in found.moved.items())
         self.reported.emit(
-            self.tr("Moved at most: {moved}. Contradictions that stay: {count}.").format(
+            self.tr("Largest moves: {moved}. Contradictions that remain: {count}.").format(
                 moved=moved, count=len(found.contradictions)
             )
         )

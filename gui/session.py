@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 from geofit.data.site import Site
 from geofit.data.verdict import verdict_of
 from geofit.gui.lengths import count_coordinates_in
 from geofit.gui.translate import shown_error, translated
 from geofit.io.crs import unit_of_grid
 from geofit.project.commands import ChangeData, Command, SetSurface
+from geofit.project.data_change import on_other_data
 from geofit.project.document import Document
 from geofit.project.journal import SessionJournal, Unfinished
+from geofit.project.named_points import Names, excluded_names
+from geofit.project.provenance import data_digest
 from geofit.project.state import State
 
 __all__ = ["Session"]
@@ -40,6 +44,12 @@ class Session(QObject):
         self.stack = QUndoStack(self)
         self.folder = folder
         self._journal: SessionJournal | None = None
+        #: Whether the journal could not be written and lacks steps.
+        self._stuck = False
+        #: Steps of the journal that can be undone and done again.
+        self._steps = self._undone = 0
+        #: The state that the journal has come to.
+        self._recorded = self.document.state
 
     def begin(
         self,
@@ -48,32 +58,43 @@ class Session(QObject):
         state: State | None = None,
         project_file: Path | None = None,
         data: Iterable[Site] = (),
+        saved: State | None = None,
+        digest: str = "",
     ) -> None:
-        """Begin with a site; what was worked on before is over. ``data`` are earlier data that the state names."""
+        """Begin with a site; what was worked on before is over. ``data`` are earlier data that the state names.
+
+        ``saved`` is the state that the files hold, if not ``state``; ``digest`` is the project file's SHA-256.
+        """
         self.end()
         self.stack.clear()
         count_coordinates_in(unit_of_grid(site.crs))
-        self.document.open(site, site_file, state, project_file, data)
-        try:
-            self._journal = SessionJournal(self.folder, self.document.state, site_file, project_file)
-        except OSError as error:
+        self.document.open(site, site_file, state, project_file, data, saved, digest)
+        self._begin_journal(self.document.state if saved is None else saved)
+
+    def resume(self, unfinished: Unfinished, site: Site) -> tuple[int, tuple[Message, ...]]:
+        """Do again what a session did that was cut off; return how many steps came back, and what is lost.
+
+        Where files of the site have changed since, the session goes on with what it had come to: its steps name lines
+        of the former files, and none of them can be undone.
+        """
+        same = unfinished.final.data in ("", data_digest(site))
+        state, lost = (unfinished.base, ()) if same else on_other_data(unfinished.final, unfinished.names, site)
+        self.begin(
+            site, unfinished.site_file, state, unfinished.project_file, unfinished.data(), unfinished.saved,
+            unfinished.digest,
+        )  # fmt: skip
+        if same:
+            for command in unfinished.commands:
+                self.push(command)
+        else:
             _LOG.warning(
                 message(
-                    "gui.log-journal-not-written",
-                    "No journal can be written, so a crash would lose unsaved work: {error}",
-                    error=shown_error(error),
+                    "gui.log-steps-not-undoable",
+                    "Files of the site have changed since: the work came back, but its steps cannot be undone.",
                 )
             )
-
-    def resume(self, unfinished: Unfinished, site: Site) -> int:
-        """Do again what a session did that was cut off; return how many steps came back."""
-        self.begin(site, unfinished.site_file, unfinished.base, unfinished.project_file, unfinished.data())
-        if unfinished.project_file is not None:
-            self.saved(unfinished.project_file, unfinished.saved)
-        for command in unfinished.commands:
-            self.push(command)
         unfinished.taken_over()
-        return len(unfinished.commands)
+        return len(unfinished.commands), lost
 
     def push(self, command: Command) -> None:
         """Do a command; DocumentError, and nothing done, if it does not apply."""
@@ -86,7 +107,7 @@ class Session(QObject):
         """Keep the data that a command is about to replace where a recovery finds them."""
         name = self.document.state.data
         site = self.document.data(name)
-        if self._journal is not None and site is not None:
+        if self._journal is not None and not self._stuck and site is not None:
             try:
                 self._journal.keep(name, site)
             except InputError as error:
@@ -98,11 +119,14 @@ class Session(QObject):
                     )
                 )
 
-    def saved(self, project_file: Path, state: State) -> None:
-        """Hear that ``state`` was written to a project file."""
-        self.document.saved(project_file, state)
-        if self._journal is not None:
-            self._journal.saved(project_file, state)
+    def saved(self, project_file: Path, state: State, digest: str) -> None:
+        """Hear that ``state`` was written to a project file, which has that SHA-256."""
+        self.document.saved(project_file, state, digest)
+        self._write(lambda journal: journal.saved(project_file, state, digest))
+        if self._stuck:
+            # The project has what the journal lacks. Another one, if there is room for it now.
+            self.end()
+            self._begin_journal(state)
 
     def end(self) -> None:
         """End the journal: what was unsaved is given up."""
@@ -110,19 +134,34 @@ class Session(QObject):
             self._journal.end()
             self._journal = None
 
-    def _record(self, command: Command, action: str) -> None:
-        self._tell(command, action)
-        if self._journal is None:
+    def _begin_journal(self, saved: State) -> None:
+        """Begin a journal with the document as it is; ``saved`` is the state that its files hold."""
+        document = self.document
+        self._stuck, self._recorded = False, document.state
+        self._steps = self._undone = 0
+        try:
+            self._journal = SessionJournal(
+                self.folder, document.state, document.site_file, document.project_file, saved,
+                document.project_digest, excluded_names(document.state, document.read),
+            )  # fmt: skip
+        except OSError as error:
+            _LOG.warning(
+                message(
+                    "gui.log-journal-not-written",
+                    "No journal can be written, so a crash would lose unsaved work: {error}",
+                    error=shown_error(error),
+                )
+            )
+
+    def _write(self, write: Callable[[SessionJournal], None]) -> None:
+        """Write to the journal, as long as that is possible."""
+        if self._journal is None or self._stuck:
             return
         try:
-            if action == "do":
-                self._journal.done(command)
-            elif action == "undo":
-                self._journal.undone()
-            else:
-                self._journal.redone()
+            write(self._journal)
         except OSError as error:
-            self._journal = None
+            # It is kept, and with it its lock: else its steps would be offered as a session that was cut off.
+            self._stuck = True
             _LOG.warning(
                 message(
                     "gui.log-journal-lost",
@@ -131,13 +170,40 @@ class Session(QObject):
                 )
             )
 
+    def _record(self, command: Command, action: str) -> None:
+        self._tell(command, action)
+        names = self._new_names()
+        if action == "do":
+            self._steps, self._undone = self._steps + 1, 0
+            self._write(lambda journal: journal.done(command, names))
+        elif action == "undo" and self._steps:
+            self._steps, self._undone = self._steps - 1, self._undone + 1
+            self._write(lambda journal: journal.undone(names))
+        elif action == "redo" and self._undone:
+            self._steps, self._undone = self._steps + 1, self._undone - 1
+            self._write(lambda journal: journal.redone(names))
+        else:
+            # The step is older than the journal, which took the place of one that could not be written.
+            state = self.document.state
+            self._steps = self._undone = 0
+            self._write(lambda journal: journal.restarted(state, excluded_names(state, self.document.read)))
+
+    def _new_names(self) -> Names:
+        """Return who the points are that were excluded since the last record, or may be called otherwise since."""
+        former, state = self._recorded, self.document.state
+        self._recorded = state
+        if (former.data, former.parts, former.horizons) != (state.data, state.parts, state.horizons):
+            return excluded_names(state, self.document.read)
+        new = {name: rows - former.excluded.get(name, frozenset()) for name, rows in state.excluded.items()}
+        return excluded_names(replace(state, excluded=new), self.document.read)
+
     def _tell(self, command: Command, action: str) -> None:
         """Log a step, a fit with its figures, and say it."""
         text = command.text
         if action == "undo":
             text = message("gui.log-undone", "Undone: {step}", step=text)
         elif action == "redo":
-            text = message("gui.log-redone", "Done again: {step}", step=text)
+            text = message("gui.log-redone", "Redone: {step}", step=text)
         elif isinstance(command, SetSurface):
             surface = self.document.surface(command.provenance.horizon)
             if surface is not None and surface.accuracy is not None:

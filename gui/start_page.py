@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 
 from geofit import __version__
 from geofit.gui.icons import application_icon, palette_icon
+from geofit.io.project import is_project
 from geofit.io.survey_kinds import is_survey
 
 __all__ = ["StartPage"]
@@ -102,7 +103,7 @@ class StartPage(QWidget):
         """List recent projects and site files."""
         self.recent.clear()
         for file in files:
-            name = file.stem if file.suffix == ".geofit" else file.parent.name
+            name = file.stem if is_project(file) else file.parent.name
             item = QListWidgetItem(f"{name}\n{file}", self.recent)
             item.setData(Qt.ItemDataRole.UserRole, str(file))
             item.setToolTip(str(file))
@@ -124,7 +125,7 @@ class StartPage(QWidget):
         self._drop.light_up(False)
         files = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
         event.acceptProposedAction()
-        if len(files) == 1 and (files[0].suffix in (".geofit", ".toml") or is_survey(files[0])):
+        if len(files) == 1 and (is_project(files[0]) or files[0].suffix.lower() == ".toml" or is_survey(files[0])):
             self.file_chosen.emit(files[0])
         elif files:
             self.import_requested.emit(files)

@@ -61,7 +61,7 @@ def read_group(source: Source, journal: Journal) -> Table:
         "note",
         source.name,
         message("io.read-as-ags", "Read as AGS {edition}, {encoding}", edition=edition, encoding=encoding),
-        message("io.state-encoding", "State encoding where this is wrong."),
+        message("io.state-encoding", "If this is wrong, state encoding."),
     )
     for line, value, reason in group.odd:
         journal.add(
@@ -149,7 +149,7 @@ def _line_of_3(group: _Group, number: int, first: str, cells: list[str], source:
             (
                 number,
                 ",".join(cells),
-                message("io.line-continues-nothing", "The line continues or heads nothing"),
+                message("io.line-continues-nothing", "The line does not belong to any row or group"),
             )
         )
     else:

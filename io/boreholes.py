@@ -291,7 +291,7 @@ def _by_elevation(rows: Rows, top: Floats, base: Floats, mouth: Floats) -> bool:
         "warning",
         rows.file,
         message("io.limits-taken-elevations", "The limits are taken as elevations, {reason}", reason=reason),
-        message("io.state-measure-depth", 'State measure = "depth" where they are depths.'),
+        message("io.state-measure-depth", 'If they are depths, state measure = "depth".'),
         column=headers[0],
     )
     return True
@@ -312,7 +312,9 @@ def _to_depths(rows: Rows, name: list[str], paths: Mapping[str, WellPath], limit
         mouth = float(path.xyz[0, 2])
         depth[members] = path.depth_of(np.where((z > mouth) & (z < mouth + 0.05), mouth, z))
     for i in np.flatnonzero(np.isnan(depth) & rows.ok).tolist():
-        reason = message("io.hole-without-depth", "The hole has no elevation {z:g} m below its collar", z=limits[i])
+        reason = message(
+            "io.hole-without-depth", "Below its collar the hole does not reach the elevation {z:g} m", z=limits[i]
+        )
         rows.reject(i, role, reason, message("io.correct-elevation", "Correct the elevation."))
     return depth
 

@@ -144,7 +144,7 @@ def _from_geojson(source: Source, journal: Journal) -> Floats:
                 "io.corners-maybe-degrees",
                 "The corners may be longitude and latitude; they are read as metres",
             ),
-            message("io.project-degrees", "Project them to the site's grid where they are degrees."),
+            message("io.project-degrees", "If they are degrees, project them to the site's grid."),
         )
     return corners
 

@@ -179,7 +179,7 @@ def _rows(source: Source, journal: Journal) -> Rows:
                 ),
                 message(
                     "io.state-columns-where-wrong",
-                    "State columns = {entry} where this is wrong.",
+                    "If this is wrong, state columns = {entry}.",
                     entry=f"{{ {role} = ... }}",
                 ),
                 column=header,

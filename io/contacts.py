@@ -146,7 +146,7 @@ def _warn_of_case(rule: ContactRule, codes: Sequence[str], file: str, journal: J
         ),
         message(
             "io.list-codes-of-one-bed",
-            "Write {limit} = {codes} where they are one bed.",
+            "If they are one bed, write {limit} = {codes}.",
             limit=Untranslated(rule.limit),
             codes=Untranslated(both),
         ),

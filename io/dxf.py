@@ -240,8 +240,8 @@ def _warn_of_unit(unit: int, source: Source, journal: Journal, scale_stated: boo
             ),
             message(
                 "io.state-scale-or-unit",
-                "Where that is so, state the unit (--unit of geofit import and geofit body, unit in a site file) or, "
-                "of a section, scale = {scale:g}.",
+                "If that is right, state the unit (--unit of geofit import and geofit body, unit in a site file) or, "
+                "for a section, scale = {scale:g}.",
                 scale=per_metre,
             ),
         )
@@ -347,5 +347,5 @@ def problem(entity: Entity, *, closed: bool = False) -> Message:
     if not np.isfinite(xyz[:, :2]).all() or np.isinf(xyz[:, 2]).any():
         return message("io.coordinate-not-finite", "A coordinate is not a finite number")
     if entity.closed and not closed:
-        return message("io.polyline-closed", "The polyline is closed, a horizon line is open")
+        return message("io.polyline-closed", "The polyline is closed, but a horizon line must be open")
     return EMPTY

@@ -104,7 +104,7 @@ def _choose(source: Source, form: str, kind: str, journal: Journal) -> Source:
                 "note",
                 source.name,
                 message("io.kind-taken", "The {kind} is taken from {table}", kind=kind, table=usual),
-                message("io.state-table", "State table where this is wrong."),
+                message("io.state-table", "If this is wrong, state table."),
             )
             return replace(source, table=usual)
     raise InputError(

@@ -212,7 +212,7 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
                 taken_as(guess),
                 message(
                     "io.state-columns-where-wrong",
-                    "State columns = {entry} where this is wrong.",
+                    "If this is wrong, state columns = {entry}.",
                     entry=f"{{ {role} = ... }}",
                 ),
                 column=guess.column,
@@ -265,7 +265,7 @@ def _geographic(table: Table, columns: Mapping[str, int], journal: Journal) -> d
             x=Untranslated(table.header[found["x"]]),
             y=Untranslated(table.header[found["y"]]),
         ),
-        message("io.state-crs-and-columns", "State crs and columns where this is wrong."),
+        message("io.state-crs-and-columns", "If this is wrong, state crs and columns."),
     )
     return found
 
@@ -311,7 +311,7 @@ def warn_of_depths(file: str, header: Sequence[str], guesses: Mapping[str, RoleG
             file,
             message(
                 "io.depth-taken-as-elevation",
-                "Column '{column}' is called a depth and is taken as an elevation, upwards",
+                "Column '{column}' is named as a depth but read as an elevation, positive upwards",
                 column=Untranslated(z.column),
             ),
             message(
@@ -425,8 +425,8 @@ def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
     on_ground = schema.name == "collar" and missing == ["z"]
     remedy = message(
         "io.name-column",
-        "Name the column in the header. A site or mapping file may state columns = {{ {example} }}, geofit fit and "
-        "check --x, --y, --z, --surface and --section; a column's number counted from 1 will do.",
+        "Name the column in the header, in columns = {{ {example} }} of a site or mapping file, or with --x, --y, "
+        "--z, --surface or --section of geofit fit and check; a column number, counted from 1, also works.",
         example=example,
     )
     ground = message("io.give-ground", "Or give the ground ([ground], a grid): collars are placed on it.")

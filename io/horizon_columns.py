@@ -119,7 +119,7 @@ def _tell_measure(rows: Rows, places: list[int], depths: bool) -> None:
             "note",
             rows.file,
             reason,
-            message("io.state-measure-depth", 'State measure = "depth" where they are depths.'),
+            message("io.state-measure-depth", 'If they are depths, state measure = "depth".'),
         )
 
 

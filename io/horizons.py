@@ -48,7 +48,7 @@ class HorizonNames:
                     "Names that differ in case only are one horizon: {names}",
                     names=", ".join(f"{name} = {self.match(name)}" for name in merged),
                 ),
-                message("io.rename-other-horizon", "Rename one where they are two."),
+                message("io.rename-other-horizon", "If they are two, rename one."),
                 column=rows.table.header[rows.columns[role]],
             )
         if self.names and not set(self.names).issuperset(named.table):

@@ -149,7 +149,7 @@ def _not_recognised(preview: TablePreview) -> tuple[Message, Message]:
     if best >= 0.5:
         return message(
             "io.file-without-columns",
-            "The file is not used: nearest to a {kind} table, but without {names}",
+            "The file is not used: it resembles a {kind} table, but lacks {names}",
             kind=nearest,
             names=tuple(message("io.quoted-name", "'{name}'", name=Untranslated(role)) for role in missing),
         ), _REMEDY
@@ -174,7 +174,7 @@ def complete(plan: ImportPlan) -> None:
             if kind == "ground":
                 remedy = message(
                     "io.state-grid-in-mapping",
-                    'State kind = "grid" in a mapping file (--mapping) where it is a horizon.',
+                    'If it is a horizon, state kind = "grid" in a mapping file (--mapping).',
                 )
             reason = message("io.kind-taken-already", "The {kind} is taken from {file} already", kind=kind, file=first)
             plan.set_aside(part.source.name, _rows_of(part), reason, remedy)

@@ -34,7 +34,7 @@ def tops_from_above(rows: Rows, hole: Sequence[str], base: Floats, collars: Cont
             "io.upper-limits-taken-from-above",
             "There are lower limits only; upper limits were taken from the row above, 0 at the first row of a hole",
         ),
-        message("io.state-upper-limits", "State columns = { from = ... } where there are upper limits."),
+        message("io.state-upper-limits", "If there are upper limits, state columns = { from = ... }."),
         column=rows.table.header[rows.columns["to"]],
     )
     holes, stray = _rows_of_holes(hole, collars)
@@ -104,7 +104,7 @@ def _sort(
             back=back,
             steps=steps,
         ),
-        message("io.state-measure-elevation", 'State measure = "elevation" where the limits are elevations.'),
+        message("io.state-measure-elevation", 'If the limits are elevations, state measure = "elevation".'),
         column=rows.table.header[rows.columns["to"]],
     )
     for members in holes.values():

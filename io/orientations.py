@@ -111,7 +111,7 @@ def _attitudes(rows: Rows) -> tuple[Floats, Floats]:
                 "io.strike-by-right-hand",
                 "The strike is read by the right-hand rule: the plane dips to the right of it",
             ),
-            message("io.give-azimuth-instead", "Give the azimuth of the dip where that is wrong."),
+            message("io.give-azimuth-instead", "If that is wrong, give the azimuth of the dip."),
             column=rows.table.header[rows.columns["strike"]],
         )
     for i in np.flatnonzero(~((dip >= 0) & (dip <= 90)) & rows.ok).tolist():

@@ -4,19 +4,20 @@
 
     {
       "format": "geofit project",
-      "version": 3,
+      "version": 4,
       "name": "Dam site",
       "crs": "EPSG:32648",
       "sources": [{"path": "data/collar.csv", "role": "collar", "sha256": "...", "mapping": {...}}],
       "settings": {"T2-T1": {"epsilon": 0.25, ...}},
-      "edits": [{"kind": "exclude", "horizon": "T2-T1", "values": {"file": "picks.csv", "row": 17}}],
+      "edits": [{"kind": "exclude", "horizon": "T2-T1", "values": {"file": "picks.csv", "row": 17, "turn": 0,
+                 "point": {"kind": "borehole", "hole": "ZK3", "section": "", "place": [x, y, z], "rank": 0}}}],
       "results": [{"horizon": "T2-T1", "surface": "site_surfaces/T2-T1-1f00c3a2.step", "sha256": "...", ...}],
       "bodies": [{"name": "ORE", "record": {...}, "mesh": "site_surfaces/ORE-77a01b9c.ply", "sha256": "...", ...}]
     }
 
-A project without bodies has no such list, and its version is 2: older readers know all of it. The file of a surface or
-a body carries the start of its hash in its name, and the project file is replaced last: whenever a save is
-interrupted, the project file on the disk names files that are there and whole.
+A project without bodies has no such list. ``point`` is who an excluded point is: it is found again where its file has
+changed. The file of a surface or a body carries the start of its hash in its name, and the project file is replaced
+last: whenever a save is interrupted, the project file on the disk names files that are there and whole.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field, fields, replace
 from os import PathLike
 from pathlib import Path
@@ -45,12 +47,14 @@ from geofit.io.project_files import BODY_FILE, SURFACE_FILE, file_folder, sha256
 from geofit.io.source import Source
 
 __all__ = [
+    "ENDING",
     "VERSION",
     "Edit",
     "Project",
     "ProjectBody",
     "ProjectResult",
     "ProjectSource",
+    "is_project",
     "load_surfaces",
     "open_project",
     "save_project",
@@ -69,7 +73,9 @@ _TYPES: dict[str, tuple[type, ...]] = {
     "Mapping[str, Any]": (Mapping,),
 }
 #: Version of the layout. A change that an older reader would misread makes it one more, with a migration.
-VERSION = 3
+VERSION = 4
+#: Ending of project files; case does not count.
+ENDING = ".geofit"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -238,8 +244,15 @@ def save_project(
         # Only what this project wrote itself, never a file from elsewhere.
         folder, _, name = old_file.partition("/")
         if folder == file_folder(target).name and (SURFACE_FILE.fullmatch(name) or BODY_FILE.fullmatch(name)):
-            (file_folder(target) / name).unlink(missing_ok=True)
+            # Another program may have it open; the project is saved all the same.
+            with suppress(OSError):
+                (file_folder(target) / name).unlink(missing_ok=True)
     return saved
+
+
+def is_project(path: Path) -> bool:
+    """Whether a file is a project by its ending."""
+    return path.suffix.lower() == ENDING
 
 
 @arguments_checked
@@ -278,7 +291,7 @@ def open_project(path: str | PathLike[str]) -> Project:
         ) from None
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise InputError(
-            message("io.format-not-stated", "The file does not say '{format}'", format=FORMAT),
+            message("io.format-not-stated", "The file does not state the format '{format}'", format=FORMAT),
             message("io.open-project-file", "Open a *.geofit file."),
             file=str(source),
         )
@@ -417,8 +430,18 @@ def _from_2(data: Mapping[str, Any]) -> dict[str, Any]:
     return {**data, "version": 3}
 
 
+def _from_3(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Version 3 had excluded rows without their points."""
+    return {**data, "version": 4}
+
+
 #: What turns version k into version k + 1.
-MIGRATIONS: dict[int, Callable[[Mapping[str, Any]], dict[str, Any]]] = {0: _from_0, 1: _from_1, 2: _from_2}
+MIGRATIONS: dict[int, Callable[[Mapping[str, Any]], dict[str, Any]]] = {
+    0: _from_0,
+    1: _from_1,
+    2: _from_2,
+    3: _from_3,
+}
 
 
 def _written(target: Path) -> Project:

@@ -56,8 +56,8 @@ def sha256_of(file: Path) -> str:
 
 def _stored(name: str, target: Path, ending: str, write: Callable[[Path], object]) -> tuple[str, str]:
     folder, stem = folder_for(file_folder(target)), file_stems([name])[name]
-    # Its own name: another window may save the same project.
-    draft = folder / f".{stem}.{uuid4().hex[:8]}.draft{ending}"
+    # Its own name, and a short one: another window may save the same project.
+    draft = folder / f".{uuid4().hex[:8]}.draft{ending}"
     try:
         write(draft)
         digest = sha256_of(draft)

@@ -88,7 +88,7 @@ class Rows:
         )
         remedy = message(
             "io.give-plain-number",
-            "Give a number with the decimal mark '{mark}' and without marks of thousands, in the unit of its column.",
+            "Give a number with the decimal mark '{mark}' and without thousands separators, in the unit of its column.",
             mark=self.table.decimal,
         )
         for i in bad.tolist():
@@ -180,7 +180,7 @@ class Rows:
                     where=where,
                     names=", ".join(f"{name} = {meant[name]}" for name in sorted(meant)[:40]),
                 ),
-                message("io.rename-other-horizon", "Rename one where they are two."),
+                message("io.rename-other-horizon", "If they are two, rename one."),
                 column=self.table.header[self.columns[role]],
             )
             names = [meant.get(name, name) for name in names]

@@ -151,7 +151,10 @@ def _own_line(rows: Rows, own: NDArray[np.intp], ends: Floats) -> Floats | None:
             i,
             "x0",
             reason,
-            message("io.section-line-bent", "A section has one line; give bent ones in [[section_lines]]."),
+            message(
+                "io.section-line-bent",
+                "All rows of a section must state the same line; give bent lines in [[section_lines]].",
+            ),
         )
     return np.asarray(ends[stated[0]].reshape(2, 2))
 

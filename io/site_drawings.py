@@ -51,7 +51,7 @@ def placed_sections(
         if name in taken:
             raise reader.fail(
                 message("io.section-name-repeated", "Two sections have the name '{name}'", name=name),
-                message("io.give-each-own-name", "Give each its own."),
+                message("io.give-each-own-name", "Give each its own name."),
                 "name",
             )
         taken.add(name)
@@ -117,7 +117,7 @@ def read_sections(
             if any(section.name == one.name for section in sections):
                 raise InputError(
                     message("io.section-name-repeated", "Two sections have the name '{name}'", name=one.name),
-                    message("io.give-each-own-name", "Give each its own."),
+                    message("io.give-each-own-name", "Give each its own name."),
                     file=source.name,
                 )
         sections += found
@@ -132,7 +132,7 @@ def _drawing(reader: Reader, table: Mapping[str, Any], where: Message | str) -> 
     if scale is not None and scale <= 0:
         raise reader.fail(
             message("io.scale-not-positive", "scale in {where} must be above 0", where=where),
-            message("io.give-drawing-units-metre", "Give drawing units a metre."),
+            message("io.give-drawing-units-metre", "Give the number of drawing units per metre."),
             "scale",
             scale,
         )

@@ -163,8 +163,8 @@ def _built(
     folded = [name.casefold() for name in names.names]
     if repeated := [name for k, name in enumerate(names.names) if folded[k] in folded[:k]]:
         raise reader.fail(
-            message("io.horizon-name-repeated", "Two [[horizon]] tables have one name (case does not count)"),
-            message("io.give-each-own-name", "Give each its own."),
+            message("io.horizon-name-repeated", "Two [[horizon]] tables have the same name (ignoring case)"),
+            message("io.give-each-own-name", "Give each its own name."),
             "name",
             repeated[0],
         )
@@ -325,7 +325,7 @@ def _boreholes(
     method = reader.get(table, "desurvey", str, where) or METHODS[0]
     if method not in METHODS:
         raise reader.fail(
-            message("io.desurvey-unknown", "The way to desurvey is unknown"),
+            message("io.desurvey-unknown", "The desurvey method is unknown"),
             message("io.write-names", "Write {names}.", names=" or ".join(METHODS)),
             "desurvey",
             method,

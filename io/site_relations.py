@@ -51,7 +51,7 @@ def read_relations(
                     "The fault '{fault}' is listed in the order of strata",
                     fault=fault,
                 ),
-                message("io.take-out-of-order", "Take it out of it."),
+                message("io.take-out-of-order", "Remove it from the order."),
                 "order",
             )
     return order, faults

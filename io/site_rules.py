@@ -30,7 +30,7 @@ def read_rule(reader: Reader, table: dict[str, Any], where: Message) -> ContactR
     occurrence = reader.get(table, "occurrence", str, where)
     if occurrence not in (None, "first", "last"):
         raise reader.fail(
-            message("io.occurrence-unknown", "{where}: which bed of several is meant is unknown", where=where),
+            message("io.occurrence-unknown", "{where}: the choice between several beds is not valid", where=where),
             message("io.write-occurrence", 'Write "first" or "last", counted from the collar down.'),
             "occurrence",
             occurrence,
@@ -40,7 +40,7 @@ def read_rule(reader: Reader, table: dict[str, Any], where: Message) -> ContactR
         for key in ("occurrence", "thinner"):
             if key in table:
                 raise reader.fail(
-                    message("io.rule-without-code", "{where} names no code whose limit it takes", where=where),
+                    message("io.rule-without-code", "{where} states neither top nor base", where=where),
                     message("io.write-top-or-base", "Write top or base, or leave this key out."),
                     key,
                 )

@@ -81,7 +81,7 @@ class Stations:
                     "degrees",
                     count=len(beyond),
                 ),
-                message("io.mark-gon", "Where they are in gon, write so in the header, as in 'azimuth (gon)'."),
+                message("io.mark-gon", "If they are in gon, state it in the header, as in 'azimuth (gon)'."),
             )
         for i in np.flatnonzero((np.abs(azimuth) > 360.0) & rows.ok).tolist():
             rows.reject(
@@ -135,7 +135,7 @@ def read_stations(
             message("io.azimuths-from-grid-north", "The azimuths are taken as relative to grid north"),
             message(
                 "io.state-declination",
-                "State declination = ... (degrees, east positive) where they are magnetic.",
+                "If they are magnetic, state declination = ... (degrees, east positive).",
             ),
             column=rows.table.header[rows.columns["azimuth"]],
         )
@@ -160,7 +160,7 @@ def read_stations(
                 i,
                 "depth",
                 message("io.hole-of-one-station", "Hole {hole} has one station only; it is straight", hole=hole),
-                message("io.add-known-stations", "Add stations where there are some."),
+                message("io.add-known-stations", "Add its other stations, if there are any."),
             )
     for hole in holes:
         if hole not in stations:
@@ -168,7 +168,7 @@ def read_stations(
                 "warning",
                 rows.file,
                 message("io.hole-taken-as-vertical", "Hole {hole} has no survey; it is taken as vertical", hole=hole),
-                message("io.add-stations-of-inclined", "Add its stations where it is inclined."),
+                message("io.add-stations-of-inclined", "If it is inclined, add its stations."),
                 value=hole,
             )
     rows.close()
@@ -211,7 +211,7 @@ def _downwards(rows: Rows, dip: Floats, sign: Literal["down-positive", "down-neg
             rows.warn(
                 i,
                 "dip",
-                message("io.hole-points-up", "By the majority's sign the hole points upwards here"),
+                message("io.hole-points-up", "By the sign of most dips, the hole points upwards here"),
                 message("io.check-sign", "Check the sign."),
             )
     return -dip if down == "down-negative" else dip

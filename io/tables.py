@@ -133,7 +133,7 @@ def read_table(source: Source, journal: Journal) -> Table:
             if named
             else message("io.without-header", "without a header"),
         ),
-        message("io.state-table-format", "State encoding, sep or decimal where this is wrong."),
+        message("io.state-table-format", "If this is wrong, state encoding, sep or decimal."),
     )
     return Table(
         name=source.name,
@@ -261,7 +261,7 @@ def _list_malformed(name: str, number: int, line: str, count: int, width: int, j
         message("io.row-cells-differ", "Cells of the row: {count}, of the header: {width}", count=count, width=width),
         message(
             "io.quote-cells",
-            "Quote cells that contain the separator, or use another separator than the decimal mark.",
+            "Quote cells that contain the separator, or use a separator other than the decimal mark.",
         ),
         row=number,
         value=line[:120],

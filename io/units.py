@@ -166,7 +166,7 @@ def _list_mark(table: Table, j: int, role: str, unit: str, journal: Journal) -> 
             unit=unit,
             metres=METRES[unit],
         ),
-        message("io.state-unit-metres", 'State unit = "m" where it is metres already.'),
+        message("io.state-unit-metres", 'If they are metres already, state unit = "m".'),
         column=table.header[j],
     )
 

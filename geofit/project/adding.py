@@ -70,7 +70,7 @@ def add_files(
         if file.resolve() in known:
             raise InputError(
                 message("project.file-added-already", "The file belongs to the site already"),
-                message("project.reload-where-changed", "Reload the site where it has changed."),
+                message("project.reload-where-changed", "If the site has changed, reload it."),
                 file=file.name,
             )
         look_at(file.resolve(), folder, mappings, site.crs, plan)

@@ -100,6 +100,7 @@ def run_body(
     settings: BodySettings | None = None,
     progress: Progress | None = None,
     signed: Signed | None = None,
+    stem: str = "",
 ) -> BodyRun:
     """Fit a body, examine it, and write ``NAME.step``, ``.stl``, ``.vtp``, ``.json`` and ``NAME_contacts.csv``.
 
@@ -113,6 +114,8 @@ def run_body(
         ``progress(stage, fraction)``; False stops.
     signed : Signed, optional
         What the STEP file states, and whether it gets a certificate.
+    stem : str
+        Name of the files without ending; empty: from the body's name.
 
     Raises
     ------
@@ -126,20 +129,20 @@ def run_body(
     folder = folder_for(out)
     tell(progress, "fit", 0.0)
     body = fit_body(source, settings, codes=codes, name=name)
-    stem = folder / file_stems([body.name])[body.name]
+    path = folder / (stem or file_stems([body.name])[body.name])
     tell(progress, "volumes", 0.3)
     volumes = body.volumes()
     tell(progress, "holes left out", 0.5)
     left_out = left_out_body(body)
     tell(progress, "STEP", 0.6)
-    step, contacts = stem.with_name(f"{stem.name}.step"), stem.with_name(f"{stem.name}_contacts.csv")
+    step, contacts = path.with_name(f"{path.name}.step"), path.with_name(f"{path.name}_contacts.csv")
     stated = (signed or Signed()).about([body.extent[0] + body.origin])
     read_back = body.write_step(step, **stated.fields)
     page = certified(step, {body.name: read_back}, {body.name: body.epsilon}, stated)
     tell(progress, "files", 0.9)
     write_contacts(body, contacts)
-    figures = stem.with_name(f"{stem.name}.json")
-    files = (step, figures, contacts, *write_triangles(body.overview, stem, body.origin))
+    figures = path.with_name(f"{path.name}.json")
+    files = (step, figures, contacts, *write_triangles(body.overview, path, body.origin))
     files = files if page is None else (*files, page)
     run = BodyRun(body, volumes, read_back, files, left_out)
     write_figures(run.figures(), figures)

@@ -136,7 +136,7 @@ class SplitAtFaults(Command):
     @property
     def text(self) -> Message:  # noqa: D102
         faults = dict.fromkeys(fault.horizon for part in self.blocks.values() for fault in part.faults)
-        return message("project.step-part", "Part {name} at {faults}", name=self.horizon, faults=", ".join(faults))
+        return message("project.step-part", "Split {name} at {faults}", name=self.horizon, faults=", ".join(faults))
 
     def on(self, state: State) -> State:  # noqa: D102
         former = [name for name, part in state.parts.items() if part.horizon == self.horizon] or [self.horizon]
@@ -216,8 +216,8 @@ class AdjustControlPoint(_ManualCommand):
             x, y, z = self.aside
             return message(
                 "project.step-move-control-point-aside",
-                "Move control point {i}, {j} of {patch} by {dz:+.3f} m and aside by ({x:+.2f}, {y:+.2f}, {z:+.2f}) m "
-                "({name})",
+                "Move control point {i}, {j} of {patch} by {dz:+.3f} m and sideways by ({x:+.2f}, {y:+.2f}, {z:+.2f}) "
+                "m ({name})",
                 i=self.i, j=self.j, patch=self.patch, dz=self.dz, x=x, y=y, z=z, name=self.horizon,
             )  # fmt: skip
         return message(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +14,7 @@ from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.io.project import is_project
 from geofit.project.building import Given, given_of, make
 from geofit.project.fault_blocks import site_with_blocks
 from geofit.project.provenance import Provenance, fingerprint
@@ -22,8 +24,7 @@ from geofit.site.states import Comparison, compare_fits
 
 __all__ = ["compare_states", "made_comparison", "state_surfaces", "write_comparisons"]
 
-#: Endings of projects; anything else is read as a site file.
-PROJECT = ".geofit"
+_LOG = logging.getLogger(__name__)
 
 
 def made_comparison(
@@ -67,7 +68,7 @@ def state_surfaces(
     GeofitError
         If a horizon cannot be fitted.
     """
-    if path.suffix != PROJECT:
+    if not is_project(path):
         from geofit.io.site_file import read_site
         from geofit.site.fit_site import fit_site
 
@@ -77,6 +78,8 @@ def state_surfaces(
             raise InputError(reason, file=str(path))
         return {name: (surface, site.horizons.get(name, surface.points)) for name, surface in fits.surfaces.items()}
     opened = read_project(path)
+    for text in opened.lost:
+        _LOG.warning(text)
     state, site = opened.state, opened.state.shaped(opened.site)
     points = site_with_blocks(site, state.parts).horizons
     found = {}

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from geofit.data.messages import Message, Untranslated, message, plural_message
@@ -13,14 +14,11 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.project.data_commands import ChangeData
 from geofit.project.fault_blocks import site_with_blocks
-from geofit.project.provenance import Earlier, Row, data_digest, fingerprint, turns
+from geofit.project.named_points import Names, PointKey, carried_rows, excluded_names, point_keys, reopened, whole_of
+from geofit.project.provenance import Earlier, data_digest, fingerprint
 from geofit.project.state import State
 
-__all__ = ["Arrivals", "DataChange", "arrivals", "carried_rows", "change_of_data", "changed_files"]
-
-#: Decimals to which two readings of one contact agree, metres.
-DECIMALS = 3
-_Key = tuple[str, str, str, tuple[float, ...]]
+__all__ = ["Arrivals", "DataChange", "arrivals", "change_of_data", "changed_files", "on_other_data"]
 
 
 @dataclass(frozen=True)
@@ -100,26 +98,11 @@ def change_of_data(state: State, before: Site, after: Site, added: Iterable[str]
     parts = {name: part for name, part in state.parts.items() if part.horizon in after.horizons}
     blocks_before, blocks_after = site_with_blocks(before, state.parts), site_with_blocks(after, parts)
     settings = {name: _settings(name, state, after, parts) for name in blocks_after.horizons}
-    excluded: dict[str, tuple[Row, ...]] = {}
-    lost: list[Message] = []
-    for name, rows in state.excluded.items():
-        whole = state.parts[name].horizon if name in state.parts else name
-        points = after.horizons.get(whole)
-        if points is None:
-            continue
-        found, gone = carried_rows(sorted(rows), before.horizons[whole], points)
-        excluded[name] = found
-        lost += [
-            message(
-                "project.exclusion-lost",
-                "{name}: {file} row {row} is no longer excluded: its point is gone or was corrected",
-                name=Untranslated(name), file=Untranslated(row.file), row=row.row,
-            )
-            for row in gone
-        ]  # fmt: skip
+    found = carried_rows(state, excluded_names(state, before), after)
+    lost = list(found.lost)
     earlier: dict[str, Earlier] = {}
     for name, provenance in state.provenances.items():
-        whole = state.parts[name].horizon if name in state.parts else name
+        whole = whole_of(state, name)
         if name not in settings:
             continue
         same = fingerprint(before.horizons[whole], before) == fingerprint(after.horizons[whole], after)
@@ -140,13 +123,26 @@ def change_of_data(state: State, before: Site, after: Site, added: Iterable[str]
     lost += [message("project.horizon-gone", "{name}: the new data contain no point of it", name=Untranslated(name))
              for name in gone_names]  # fmt: skip
     files = tuple(name for name, digest in after.inputs.items() if before.inputs.get(name) != digest)
-    command = ChangeData(data, files, tuple(added), settings, parts, excluded, earlier)
+    command = ChangeData(data, files, tuple(added), settings, parts, dict(found.excluded), earlier)
     names = dict.fromkeys([*before.horizons, *after.horizons])
     empty = PointSet([])
     found_arrivals = tuple(
         arrivals(name, before.horizons.get(name, empty), after.horizons.get(name, empty)) for name in names
     )
-    return DataChange(command, found_arrivals, sum(map(len, excluded.values())), tuple(lost))
+    return DataChange(command, found_arrivals, sum(map(len, found.excluded.values())), tuple(lost))
+
+
+def on_other_data(state: State, names: Names, site: Site) -> tuple[State, tuple[Message, ...]]:
+    """Return a state that was stored, on a site whose files have changed since; and what of the work is lost.
+
+    ``names`` are who the excluded points are (:func:`geofit.project.named_points.excluded_names`).
+    """
+    state, found = reopened(state, names, state.shaped(site), site.inputs)
+    if not site.horizons:
+        return replace(state, data=data_digest(site)), found.lost
+    # Of the former data nothing is known but the names: horizons that are gone or new are all that is left to see.
+    change = change_of_data(state, state.shaped(site), site, state.added)
+    return change.command.on(state), (*found.lost, *change.lost)
 
 
 def arrivals(horizon: str, before: PointSet, after: PointSet) -> Arrivals:
@@ -165,46 +161,10 @@ def arrivals(horizon: str, before: PointSet, after: PointSet) -> Arrivals:
     return Arrivals(horizon, len(came) - corrected, corrected, len(went) - corrected, tuple(holes))
 
 
-def carried_rows(rows: Iterable[Row], before: PointSet, after: PointSet) -> tuple[tuple[Row, ...], tuple[Row, ...]]:
-    """Return rows as they are called now, and those whose points are gone or were corrected.
-
-    A point is found again by its file, kind, hole, section and place; of several at one location by their order.
-    """
-    places: dict[tuple[str, _Key], list[int]] = {}
-    for index, key in enumerate(_keys(after)):
-        places.setdefault((str(after.file[index]), key), []).append(index)
-    keys, turn = _keys(before), turns(after)
-    found: list[Row] = []
-    lost: list[Row] = []
-    for row in rows:
-        at = row.find(before)
-        same = [] if at is None else places.get((row.file, keys[at]), [])
-        rank = 0 if at is None else sum(keys[k] == keys[at] and before.file[k] == row.file for k in range(at))
-        if rank < len(same):
-            index = same[rank]
-            found.append(Row(str(after.file[index]), int(after.row[index]), int(turn[index])))
-        else:
-            lost.append(row)
-    return tuple(sorted(found)), tuple(lost)
-
-
 def _settings(name: str, state: State, after: Site, parts: Mapping[str, object]) -> FitSettings:
     known = state.settings.get(name)
     return known if known is not None else after.settings.get(name, FitSettings())
 
 
-def _keys(points: PointSet) -> list[_Key]:
-    places = points.xyz.round(DECIMALS).tolist()
-    return [
-        (kind, hole, section, tuple(place))
-        for kind, hole, section, place in zip(
-            points.kind.tolist(), points.hole.tolist(), points.section.tolist(), places, strict=True
-        )
-    ]
-
-
-def _counted(points: PointSet) -> dict[_Key, int]:
-    found: dict[_Key, int] = {}
-    for key in _keys(points):
-        found[key] = found.get(key, 0) + 1
-    return found
+def _counted(points: PointSet) -> Counter[PointKey]:
+    return Counter(point_keys(points))

@@ -64,6 +64,8 @@ class Document:
         self._read = self._site = _EMPTY
         self.site_file: Path | None = None
         self.project_file: Path | None = None
+        #: SHA-256 of the project file as it was read or written here: another window may have saved since.
+        self.project_digest = ""
         self.selection = Selection()
         self.shelf, self.bodies = Shelf(), BodyShelf()
         self._state = self._saved = State()
@@ -91,15 +93,21 @@ class Document:
         state: State | None = None,
         project_file: Path | None = None,
         data: Iterable[Site] = (),
+        saved: State | None = None,
+        digest: str = "",
     ) -> None:
-        """Begin with a site, and with the work that a project or a journal holds; ``data`` are its earlier data."""
-        self.site_file, self.project_file = site_file, project_file
+        """Begin with a site, and with the work that a project or a journal holds; ``data`` are its earlier data.
+
+        ``saved`` is the state that the files hold, by default that work; ``digest`` is the project file's SHA-256.
+        """
+        self.site_file, self.project_file, self.project_digest = site_file, project_file, digest
         self.shelf.clear()
         self.bodies.clear()
         self._judged.clear()
         self._listings.clear()
         self._comparisons.clear()
-        self._state = self._saved = state or State.of_site(site)
+        self._state = state or State.of_site(site)
+        self._saved = saved or self._state
         self._data = {data_digest(one): one for one in (*data, site)}
         self._data.setdefault(self._state.data, site)
         self._take_data()
@@ -177,9 +185,9 @@ class Document:
         if was_dirty != self.dirty:
             self.saved_changed.emit()
 
-    def saved(self, project_file: Path, state: State) -> None:
-        """Hear that ``state`` was written to a project file."""
-        self.project_file, self._saved = project_file, state
+    def saved(self, project_file: Path, state: State, digest: str = "") -> None:
+        """Hear that ``state`` was written to a project file, which has that SHA-256."""
+        self.project_file, self.project_digest, self._saved = project_file, digest, state
         self.saved_changed.emit()
 
     def points(self, name: str) -> PointSet:

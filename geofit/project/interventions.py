@@ -47,7 +47,7 @@ def _in_words(edit: ManualEdit | SeparationEdit) -> Message:
         x, y, z = edit.aside
         return message(
             "project.moved-aside",
-            "control point ({i}, {j}) of patch {patch} moved by {dz:+.3f} m and aside by ({x:+.3f}, {y:+.3f}, "
+            "control point ({i}, {j}) of patch {patch} moved by {dz:+.3f} m and sideways by ({x:+.3f}, {y:+.3f}, "
             "{z:+.3f}) m",
             i=edit.i,
             j=edit.j,

@@ -2,15 +2,17 @@
 
 ::
 
-    1f00c3a2 {"format": "geofit journal", "version": 1, "site_file": "...", "state": {...}, ...}
+    1f00c3a2 {"format": "geofit journal", "version": 2, "site_file": "...", "state": {...}, ...}
     9b2e5d10 {"do": {"kind": "settings", "horizon": "T2-T1", ...}}
+    03c1d7ee {"do": {"kind": "exclude", "horizon": "T2-T1", ...}, "points": {"T2-T1": [...]}}
     00aa81cc {"undo": true}
-    5d8f3b02 {"saved": "dam.geofit", "state": {...}}
+    5d8f3b02 {"saved": "dam.geofit", "state": {...}, "digest": "..."}
 
 Each line carries its checksum and is on the disk (fsync) before the command counts as done. A session that ends
 removes its journal; one that is there and that no living process holds was cut off, and is replayed from its
 first line up to the last whole one. A journal that a newer geofit wrote, or that makes no sense, is kept under another
-name (``.unreadable``) and never looked at again.
+name (``.unreadable``) and never looked at again. ``points`` is who excluded points are: their files may have changed
+when the session is brought back.
 """
 
 from __future__ import annotations
@@ -22,7 +24,7 @@ import sys
 import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
@@ -31,35 +33,58 @@ from geofit.data.files import file_stems
 from geofit.data.site import Site
 from geofit.io.snapshot import read_snapshot, write_snapshot
 from geofit.project.commands import Command, command_from
+from geofit.project.named_points import NO_NAMES, Names, names_from, names_to_data
 from geofit.project.saving import earlier_data, saved_data
 from geofit.project.state import State
 
 __all__ = ["SessionJournal", "Unfinished", "unfinished"]
 
-FORMAT, VERSION = "geofit journal", 1
+FORMAT, VERSION = "geofit journal", 2
+#: Version 1 had no points, no digests, and began with what the files hold.
+_READ = (1, 2)
 _SUFFIX, _KEPT = ".journal", ".unreadable"
 
 _LOG = logging.getLogger(__name__)
 
 
 class SessionJournal:
-    """The journal of this session; ``folder`` is created if missing."""
+    """The journal of this session; ``folder`` is created if missing.
 
-    def __init__(self, folder: Path, state: State, site_file: Path | None, project_file: Path | None) -> None:
+    ``saved`` is the state that the files hold, by default the one that the session begins with; ``digest`` is the
+    SHA-256 of the project file.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        state: State,
+        site_file: Path | None,
+        project_file: Path | None,
+        saved: State | None = None,
+        digest: str = "",
+        names: Names = NO_NAMES,
+    ) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         self.path, self._stream = _new_file(folder)
         self._kept: list[Path] = []
-        _hold(self._stream)
-        self._write(
-            {
-                "format": FORMAT,
-                "version": VERSION,
-                "site_file": None if site_file is None else str(site_file),
-                "project_file": None if project_file is None else str(project_file),
-                "state": state.to_data(),
-            }
-        )
-        _sync_folder(folder)
+        try:
+            _hold(self._stream)
+            self._write(
+                {
+                    "format": FORMAT,
+                    "version": VERSION,
+                    "site_file": None if site_file is None else str(site_file),
+                    "project_file": None if project_file is None else str(project_file),
+                    "digest": digest,
+                    "state": state.to_data(),
+                    "saved": None if saved is None or saved == state else saved.to_data(),
+                    **_points(names),
+                }
+            )
+            _sync_folder(folder)
+        except OSError:
+            self.end()
+            raise
 
     def keep(self, name: str, site: Site) -> None:
         """Keep data of the site that a command replaces, until the session ends: undoing it needs them."""
@@ -68,28 +93,34 @@ class SessionJournal:
             write_snapshot(site, file)
         self._kept.append(file)
 
-    def done(self, command: Command) -> None:
-        """Write that a command was done."""
-        self._write({"do": command.to_data()})
+    def done(self, command: Command, names: Names = NO_NAMES) -> None:
+        """Write that a command was done; ``names`` are those of excluded points that the journal does not have yet."""
+        self._write({"do": command.to_data(), **_points(names)})
 
-    def undone(self) -> None:
+    def undone(self, names: Names = NO_NAMES) -> None:
         """Write that the last command was undone."""
-        self._write({"undo": True})
+        self._write({"undo": True, **_points(names)})
 
-    def redone(self) -> None:
+    def redone(self, names: Names = NO_NAMES) -> None:
         """Write that the command undone last was done again."""
-        self._write({"redo": True})
+        self._write({"redo": True, **_points(names)})
 
-    def saved(self, project_file: Path, state: State) -> None:
+    def restarted(self, state: State, names: Names = NO_NAMES) -> None:
+        """Write that the session goes on from a state that is not one step of this journal away."""
+        self._write({"base": state.to_data(), **_points(names)})
+
+    def saved(self, project_file: Path, state: State, digest: str = "") -> None:
         """Write that the project file holds a state."""
-        self._write({"saved": str(project_file), "state": state.to_data()})
+        self._write({"saved": str(project_file), "state": state.to_data(), "digest": digest})
 
     def end(self) -> None:
         """End the session: nothing is to be recovered."""
-        self._stream.close()
-        self.path.unlink(missing_ok=True)
-        for file in self._kept:
-            file.unlink(missing_ok=True)
+        # What could not be written before cannot be written now: it is not wanted any more.
+        with suppress(OSError):
+            self._stream.close()
+        for file in (self.path, *self._kept):
+            with suppress(OSError):
+                file.unlink(missing_ok=True)
 
     def _write(self, record: Mapping[str, Any]) -> None:
         # A path may have bytes that are not UTF-8: they come back as they are.
@@ -104,7 +135,8 @@ class Unfinished:
     """A session that was cut off.
 
     ``base`` is the state that it began with, ``commands`` what was done since and not undone, ``saved`` the state
-    that the files hold, and ``time`` that of the last line (seconds, as ``os.stat`` has it).
+    that the files hold, ``digest`` the SHA-256 of the project file that holds it, ``names`` who the excluded points of
+    the last state are, and ``time`` that of the last line (seconds, as ``os.stat`` has it).
     """
 
     path: Path
@@ -114,6 +146,8 @@ class Unfinished:
     commands: tuple[Command, ...]
     saved: State
     time: float
+    digest: str = ""
+    names: Names = field(default_factory=dict)
 
     def data(self) -> list[Site]:
         """Return the data of the site that states of the session name and that the journal, or its project, kept."""
@@ -194,13 +228,17 @@ def _read(path: Path, data: bytes) -> Unfinished | None:
     head = next(records, None)
     if head is None:
         raise ValueError("its first line is damaged")
-    if head["format"] != FORMAT or head["version"] != VERSION:
-        raise ValueError(f"it is a {head['format']} of version {head['version']}, this geofit reads {VERSION}")
+    if head["format"] != FORMAT or head["version"] not in _READ:
+        raise ValueError(f"it is a {head['format']} of version {head['version']}, this geofit reads up to {VERSION}")
     done: list[Command] = []
     undone: list[Command] = []
-    project_file = head["project_file"]
-    base = saved = State.from_data(head["state"])
+    project_file, digest = head["project_file"], head.get("digest", "")
+    base = State.from_data(head["state"])
+    saved = State.from_data(head["saved"]) if head.get("saved") else base
+    names = names_from(head.get("points", {}))
     for record in records:
+        for name, rows in names_from(record.get("points", {})).items():
+            names.setdefault(name, {}).update(rows)
         if "do" in record:
             done.append(command_from(record["do"]))
             undone.clear()
@@ -208,8 +246,13 @@ def _read(path: Path, data: bytes) -> Unfinished | None:
             undone.append(done.pop())
         elif "redo" in record:
             done.append(undone.pop())
+        elif "base" in record:
+            base = State.from_data(record["base"])
+            done.clear()
+            undone.clear()
         else:
             saved, project_file = State.from_data(record["state"]), record["saved"]
+            digest = record.get("digest", "")
     return Unfinished(
         path,
         _path(head["site_file"]),
@@ -218,7 +261,13 @@ def _read(path: Path, data: bytes) -> Unfinished | None:
         tuple(done),
         saved,
         path.stat().st_mtime,
+        digest,
+        names,
     )
+
+
+def _points(names: Names) -> dict[str, Any]:
+    return {"points": names_to_data(names)} if any(names.values()) else {}
 
 
 def _records(data: bytes) -> Iterator[dict[str, Any]]:

@@ -10,6 +10,7 @@ from geofit.data.languages import language
 from geofit.data.messages import Message, message
 from geofit.data.prediction import PredictionResult
 from geofit.data.progress import Progress, tell
+from geofit.data.stale import stale_warning
 from geofit.project.body_building import BodyResult
 from geofit.project.fault_blocks import Blocks, site_fit
 from geofit.project.run import Form, write_reports
@@ -62,7 +63,9 @@ def write_report_files(
         for before, after in zip(results, made.results, strict=True)
         if before.prediction is None and after.prediction is not None and before.surface.model is not None
     }
-    return ReportFiles(made.files, (*made.warnings, *failed), new)
+    stale = [result.name for result in results if result.stale]
+    warnings = (*([stale_warning(stale)] if stale else []), *made.warnings, *failed)
+    return ReportFiles(made.files, warnings, new)
 
 
 def _parts(

@@ -7,18 +7,28 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from geofit.checks.check import check
-from geofit.data.errors import InputError
+from geofit.data.errors import GeofitError, InputError
 from geofit.data.files import file_stems
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.implicit.mesh import TriangleMesh
-from geofit.io.project import Edit, Project, ProjectSource, load_surfaces, open_project, save_project
+from geofit.io.project import (
+    Edit,
+    Project,
+    ProjectResult,
+    ProjectSource,
+    load_surfaces,
+    open_project,
+    save_project,
+)
+from geofit.io.project_files import sha256_of
 from geofit.io.site_file import load_site, read_site
 from geofit.io.snapshot import read_snapshot, write_snapshot
 from geofit.project.body_building import BodyResult
@@ -27,11 +37,13 @@ from geofit.project.body_saving import SavedBody, bodies_of, read_bodies, record
 from geofit.project.building import beside
 from geofit.project.fault_blocks import site_with_blocks
 from geofit.project.horizon_edits import HorizonEdit, shaped
+from geofit.project.named_points import NO_NAMES, NamedPoint, Names, excluded_names, found_again, reopened
 from geofit.project.provenance import Earlier, Part, Provenance, Row, corners_from, data_digest, without_rows
 from geofit.project.state import State
 
 __all__ = [
     "Opened",
+    "SiteFileGoneError",
     "Written",
     "earlier_data",
     "project_of",
@@ -52,7 +64,9 @@ class Opened:
     """A project that was read: its site, the work on it, and what is "missing" or "changed" since, by path.
 
     ``data`` are the earlier data of the site that the work names, ``bodies`` those whose triangles the project holds,
-    as they were saved.
+    as they were saved. ``saved`` is the state as the file has it, ``state`` with its excluded rows where their points
+    are now: ``moved`` is how many are on other lines, ``lost`` lists what does not survive. ``digest`` is the SHA-256
+    of the project file.
     """
 
     site: Site
@@ -62,18 +76,37 @@ class Opened:
     changed: Mapping[str, str]
     data: tuple[Site, ...] = ()
     bodies: Mapping[BodyProvenance, BodyResult] = field(default_factory=dict)
+    saved: State = field(default_factory=State)
+    moved: int = 0
+    lost: tuple[Message, ...] = ()
+    digest: str = ""
 
 
-def read_project(path: Path, progress: Progress | None = None) -> Opened:
+class SiteFileGoneError(InputError):
+    """A project's site file is not where the project names it: :func:`read_project` takes its new place."""
+
+
+def read_project(path: Path, progress: Progress | None = None, *, site_file: Path | None = None) -> Opened:
     """Read a project file and its site; the surfaces are read by :func:`saved_surfaces`.
+
+    Parameters
+    ----------
+    path : Path
+        The project file.
+    progress : callable, optional
+        ``progress(stage, fraction)``; False stops.
+    site_file : Path, optional
+        Where the site file is now; by default where the project names it.
 
     Raises
     ------
+    SiteFileGoneError
+        If the site file is not there.
     InputError
         If a file cannot be used, or the project names no site file.
     """
     tell(progress, "read the project", 0.0)
-    project = open_project(path)
+    project, digest = open_project(path), sha256_of(path)
     source = next((source for source in project.sources if source.role == _SITE), None)
     if source is None:
         raise InputError(
@@ -81,22 +114,37 @@ def read_project(path: Path, progress: Progress | None = None) -> Opened:
             message("project.open-site-file", "Open the site file (site.toml) instead."),
             file=str(path),
         )
-    site_file = (path.parent / source.path).resolve()
+    named, elsewhere = path.parent / source.path, site_file is not None
+    site_file = _resolved(site_file or named)
     if not site_file.is_file():
-        raise InputError(
+        raise SiteFileGoneError(
             message("project.site-file-gone", "The project's site file is not there any more"),
             message("project.put-site-file-back", "Put it back, or open the site file where it is now."),
             file=str(site_file),
         )
     site = site_for_work(site_file, _added(project), progress=progress)
-    state, changed = state_of(project, site), project.changed(path.parent)
+    hashes = {source.path: source.sha256 for source in project.sources}
+    other = [
+        name for name, now in site.inputs.items() if hashes.get(_relative(named.parent / name, path.parent)) != now
+    ]
+    saved = state_of(project, site)
+    state, carried = reopened(saved, _names(project), saved.shaped(site), other)
+    if elsewhere:
+        # The file names a site file that is not there: whatever the work, the project is to be saved.
+        saved = State()
+        changed = replace(project, sources=()).changed(path.parent) | dict.fromkeys(other, "changed")
+    else:
+        changed = project.changed(path.parent)
     data = saved_data(state, path)
     for digest in earlier_data(state):
         if digest not in data:
             file = _data_file(path, digest)
             changed[_relative(file, path.parent)] = "changed" if file.is_file() else "missing"
     bodies = read_bodies(project, path.parent, changed)
-    return Opened(site, site_file, state, project, changed, tuple(data.values()), bodies)
+    return Opened(
+        site, site_file, state, project, changed, tuple(data.values()), bodies, saved, carried.moved, carried.lost,
+        digest,
+    )  # fmt: skip
 
 
 def read_again(site_file: Path, added: tuple[str, ...], *, progress: Progress | None = None) -> Site:
@@ -121,11 +169,12 @@ def site_for_work(file: Path, added: tuple[str, ...] = (), *, progress: Progress
 
 @dataclass(frozen=True, eq=False)
 class Written:
-    """What was saved, and where."""
+    """What was saved, and where; ``digest`` is the SHA-256 of the project file."""
 
     path: Path
     state: State
     project: Project
+    digest: str
 
 
 def save_state(
@@ -142,8 +191,21 @@ def save_state(
 ) -> Written:
     """Write a state as a project; ``same`` if it replaces the project that was opened, whose surfaces may stay.
 
-    ``data`` are the earlier data that the state names, by their names; ``bodies`` are those available, by name.
+    Of the ``site`` as it is worked on its name, its inputs and the horizons with excluded rows are needed. ``data`` are
+    the earlier data that the state names, by their names; ``bodies`` are those available, by name.
+
+    Raises
+    ------
+    InputError
+        If the folder is gone, or a file cannot be written.
     """
+    if not path.parent.is_dir():
+        # Made anew, it would have a project without its site.
+        raise InputError(
+            message("project.folder-gone", "The folder of the project is not there any more"),
+            message("project.save-elsewhere", "Put it back, or save the project under another name."),
+            file=str(path),
+        )
     former = None
     if same and path.is_file():
         try:
@@ -157,7 +219,8 @@ def save_state(
         if not _data_file(path, digest).is_file():
             write_snapshot(earlier, _data_file(path, digest))
     meshes = {name: body.mesh for name, body in (bodies or {}).items()}
-    return Written(path, state, write_project(project, path, new_surfaces(project, surfaces), meshes))
+    written = write_project(project, path, new_surfaces(project, surfaces), meshes)
+    return Written(path, state, written, sha256_of(path))
 
 
 def read_saved_surfaces(
@@ -167,29 +230,42 @@ def read_saved_surfaces(
     tell(progress, "read STEP", 0.0)
     found = saved_surfaces(project, folder)
     tell(progress, "check", 0.7)
+    names = _names(project)
     return {
-        provenance: beside(checked(surface, provenance, site), provenance, site)
+        provenance: beside(checked(surface, provenance, site, names), provenance, site)
         for provenance, surface in found.items()
         if len(site.horizons.get(provenance.horizon, ()))
     }
 
 
 def saved_surfaces(project: Project, folder: Path) -> dict[Provenance, HorizonFit]:
-    """Read the surfaces that a project names and that are there, by their provenances; without their models."""
-    there = tuple(result for result in project.results if result.provenance and (folder / result.surface).is_file())
-    surfaces = load_surfaces(replace(project, results=there), folder)
-    return {Provenance.from_data(result.provenance): surfaces[result.horizon] for result in there}
+    """Read the surfaces of a project, without their models, by their provenances.
+
+    One whose file is missing, damaged or another's is left out: it is made again from its provenance.
+    """
+    found = {}
+    for result in project.results:
+        if result.provenance and _is_whole(result, folder):
+            with suppress(GeofitError):
+                (surface,) = load_surfaces(replace(project, results=(result,)), folder).values()
+                found[Provenance.from_data(result.provenance)] = surface
+    return found
 
 
-def checked(surface: HorizonFit, provenance: Provenance, site: Site) -> HorizonFit:
-    """Return a surface that was read from a file, with its points and its check."""
-    points = without_rows(site.horizons[provenance.horizon], provenance.excluded)
+def checked(surface: HorizonFit, provenance: Provenance, site: Site, names: Names = NO_NAMES) -> HorizonFit:
+    """Return a surface that was read from a file, with its points and its check.
+
+    Rows that were excluded are found by the ``names`` of their points: their lines may be others' now.
+    """
+    given, named = site.horizons[provenance.horizon], names.get(provenance.horizon, {})
+    now = found_again(named, given)
+    points = without_rows(given, [now.get(row, row) for row in provenance.excluded if row in now or row not in named])
     known = surface.with_(points=points, settings=provenance.settings, core=np.zeros(len(points), bool))
     return known.with_(accuracy=check(known))
 
 
 def state_of(project: Project, site: Site) -> State:
-    """Return the work that a project holds, as far as its site still has the horizons."""
+    """Return the work that a project holds, as far as its site still has the horizons; rows by their former lines."""
     data = data_digest(site)
     area = next((corners_from(edit.values["corners"]) for edit in project.edits if edit.kind == "area"), None)
     horizons = tuple(HorizonEdit.from_data(edit.values) for edit in project.edits if edit.kind == "horizons")
@@ -202,7 +278,7 @@ def state_of(project: Project, site: Site) -> State:
     order = tuple(site_with_blocks(site, parts).horizons)
     for edit in project.edits:
         if edit.kind == "exclude" and edit.horizon in default:
-            excluded[edit.horizon] = excluded.get(edit.horizon, frozenset()) | {Row(**edit.values)}
+            excluded[edit.horizon] = excluded.get(edit.horizon, frozenset()) | {_row(edit)}
         elif edit.kind == "order":
             named = [name for name in edit.values["horizons"] if name in order]
             order = (*named, *(name for name in order if name not in named))
@@ -221,6 +297,20 @@ def state_of(project: Project, site: Site) -> State:
         project.name, order, settings, excluded, provenances, parts, data, _added(project), earlier, area, horizons,
         records_of(project),
     )  # fmt: skip
+
+
+def _row(edit: Edit) -> Row:
+    """Return the row that an edit excludes."""
+    return Row(**{key: value for key, value in edit.values.items() if key != "point"})
+
+
+def _names(project: Project) -> dict[str, dict[Row, NamedPoint]]:
+    """Return who the excluded points of a project are, where it knows."""
+    names: dict[str, dict[Row, NamedPoint]] = {}
+    for edit in project.edits:
+        if edit.kind == "exclude" and "point" in edit.values:
+            names.setdefault(edit.horizon, {})[_row(edit)] = NamedPoint.from_data(edit.values["point"])
+    return names
 
 
 def _added(project: Project) -> tuple[str, ...]:
@@ -248,16 +338,20 @@ def _data_file(project_file: Path, digest: str) -> Path:
 
 
 def project_of(state: State, site: Site, site_file: Path, target: Path, former: Project | None) -> Project:
-    """Return what is saved: results of ``former`` whose provenances still hold need not be written again."""
+    """Return what is saved: results of ``former`` whose provenances still hold need not be written again.
+
+    ``site`` as :func:`save_state` takes it.
+    """
     folder = target.parent
-    sources = [ProjectSource(path=_relative(site_file, folder), role=_SITE)]
+    # The hashes are those of what was read: a file may have changed since, or be gone.
+    sources = [ProjectSource(path=_relative(site_file, folder), role=_SITE, sha256=site.inputs.get(site_file.name, ""))]
     for name, digest in site.inputs.items():
-        file = site_file.parent / name
-        if file.is_file() and file != site_file:
-            path = _relative(file, folder)
+        if name != site_file.name:
+            path = _relative(site_file.parent / name, folder)
             sources.append(ProjectSource(path=path, role="table", sha256=digest))
+    names = excluded_names(state, site)
     edits = [
-        Edit(kind="exclude", horizon=name, values=asdict(row))
+        Edit(kind="exclude", horizon=name, values=asdict(row) | _point(names.get(name, {}).get(row)))
         for name, rows in state.excluded.items()
         for row in sorted(rows)
     ]
@@ -273,7 +367,7 @@ def project_of(state: State, site: Site, site_file: Path, target: Path, former: 
         for result in former.results
         if result.provenance
         and state.provenances.get(result.horizon) == Provenance.from_data(result.provenance)
-        and (folder / result.surface).is_file()
+        and _is_whole(result, folder)
     )  # fmt: skip
     return Project(
         name=state.name, crs=site.crs, sources=tuple(sources), settings=state.settings, edits=tuple(edits), results=kept
@@ -298,9 +392,28 @@ def new_surfaces(project: Project, surfaces: Mapping[Provenance, HorizonFit]) ->
     return {provenance: surface for provenance, surface in surfaces.items() if provenance not in there}
 
 
+def _point(name: NamedPoint | None) -> dict[str, Any]:
+    return {} if name is None else {"point": asdict(name)}
+
+
+def _is_whole(result: ProjectResult, folder: Path) -> bool:
+    """Whether the file of a surface is there, with the bytes that were written."""
+    file = folder / result.surface
+    return file.is_file() and (not result.sha256 or sha256_of(file) == result.sha256)
+
+
+def _resolved(file: Path) -> Path:
+    """Return the path of a file without links in its folders; what the file itself links to has other neighbours."""
+    return file.parent.resolve() / file.name
+
+
 def _relative(file: Path, folder: Path) -> str:
-    """Return the path from the folder, with forward slashes; absolute on another drive of Windows."""
+    """Return the path from the folder, with forward slashes; absolute on another drive of Windows.
+
+    Both are freed of links first: the system resolves these before it goes up.
+    """
+    file = _resolved(file)
     try:
-        return Path(os.path.relpath(file, folder)).as_posix()
+        return Path(os.path.relpath(file, folder.resolve())).as_posix()
     except ValueError:
         return file.as_posix()

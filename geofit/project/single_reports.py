@@ -151,24 +151,24 @@ def body_part(
 
 
 def write_body_part(
-    site: Site, code: str, horizons: Mapping[str, Any], out: Path, language_code: str, signed: Signed | None = None
-) -> BodyPart | Message:
+    site: Site, code: str, name: str, stem: Path, horizons: Mapping[str, Any], language_code: str,
+    signed: Signed | None = None,
+) -> BodyPart | Message:  # fmt: skip
     """Fit a body to the intervals of a code, write its files, and lay out its chapter; or return why that failed."""
     failed: list[Message] = []
-    made = guarded(lambda: _body_part(site, code, horizons, out, language_code, signed), None, failed.append)
+    made = guarded(lambda: _body_part(site, code, name, stem, horizons, language_code, signed), None, failed.append)
     return failed[0] if made is None else made
 
 
 def _body_part(
-    site: Site, code: str, horizons: Mapping[str, Any], out: Path, language_code: str, signed: Signed | None
-) -> BodyPart:
+    site: Site, code: str, name: str, stem: Path, horizons: Mapping[str, Any], language_code: str,
+    signed: Signed | None,
+) -> BodyPart:  # fmt: skip
     from geofit.project.body_run import run_body
     from geofit.report.body_chapter import body_chapter
 
     t = language(language_code)
-    # A horizon of the same name has files of that name already.
-    name = f"{code} body" if code in site.horizons else code
-    run = run_body(site, out, codes=code, name=name, signed=signed)
+    run = run_body(site, stem.parent, codes=code, name=name, signed=signed, stem=stem.name)
     found, images = body_findings(run, horizons, t)
     return BodyPart(name, body_chapter(found, t), images, run.accuracy.passed)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
@@ -99,12 +99,14 @@ def write_step_files(
     unit: Unit,
     separate: bool,
     signed: Signed | None = None,
+    stale: Collection[str] = (),
     *,
     progress: Progress,
 ) -> list[StepFile]:
     """Write surfaces as STEP, in one file or one each, and read every file back.
 
-    With a certificate, the page goes next to each file under its name: ``dam.step`` gets ``dam_certificate.pdf``.
+    With a certificate, the page goes next to each file under its name: ``dam.step`` gets ``dam_certificate.pdf``. It
+    names ``stale`` surfaces, which were fitted to earlier data or settings.
 
     Raises
     ------
@@ -120,13 +122,17 @@ def write_step_files(
         mine = {name: surfaces[name] for name in names}
         found = write_step(mine, path, unit=unit, **by.fields)
         epsilon = {name: as_fitted(surface).settings.epsilon for name, surface in mine.items()}
-        page = certified(path, found, epsilon, by)
+        page = certified(path, found, epsilon, by, stale)
         written.append(StepFile(path, path.stat().st_size, found, page))
     return written
 
 
 def certified(
-    path: Path, found: Mapping[str, ReadBack | SolidReadBack], epsilon: Mapping[str, float], by: Signed
+    path: Path,
+    found: Mapping[str, ReadBack | SolidReadBack],
+    epsilon: Mapping[str, float],
+    by: Signed,
+    stale: Collection[str] = (),
 ) -> Path | None:
     """Write the certificate of a file next to it; return its page, None where none is wanted.
 
@@ -140,6 +146,8 @@ def certified(
         Control error of each, metres.
     by : Signed
         What the file states.
+    stale : collection of str
+        Horizons whose surfaces were fitted to earlier data or settings.
 
     Raises
     ------
@@ -153,6 +161,6 @@ def certified(
     page = path.with_name(f"{path.stem}_certificate.pdf")
     write_certificate(
         page, path, found, epsilon, language(by.certificate), author=by.author, organisation=by.organisation,
-        offset=tuple(by.offset.tolist()),
+        offset=tuple(by.offset.tolist()), stale=stale,
     )  # fmt: skip
     return page

@@ -91,7 +91,7 @@ def write_report(
             raise SettingsError(
                 message(
                     "project.report-form-unknown",
-                    "A report as '{form}' is unknown; choose {names}.",
+                    "The report format '{form}' is unknown; choose {names}.",
                     form=Untranslated(form),
                     names=", ".join(get_args(Form)),
                 )

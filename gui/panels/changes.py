@@ -85,9 +85,11 @@ class ChangesPanel(QWidget):
         self.parts.setOrientation(Qt.Orientation.Vertical if high else Qt.Orientation.Horizontal)
 
     def show_nothing(self, lost: Sequence[Message] = ()) -> None:
-        """Say that the horizon's data have not changed."""
+        """Say that the horizon's data have not changed, or that no earlier surface is known; and what was ``lost``."""
         self._name, self._comparison = "", None
         words = self.tr("The data of this horizon have not changed: there is nothing to compare.")
+        if lost:
+            words = self.tr("The data have changed, and there is no earlier surface of this horizon to compare with.")
         self._say(self._with_lost(words, lost), self.tr("Add data…"), self.add_requested.emit)
 
     def show_state(

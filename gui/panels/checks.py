@@ -184,7 +184,7 @@ class ChecksPanel(QWidget):
     def _cut(self, cut: FaultCut) -> QTreeWidgetItem:
         name = self.tr("{up} above {down}, at {fault}").format(up=cut.up, down=cut.down, fault=cut.fault)
         mean = measured(float(cut.throw.mean()), "m")
-        return self._row(name, None, mean, words=translated(cut.text), word=self.tr("for knowledge"))
+        return self._row(name, None, mean, words=translated(cut.text), word=self.tr("for information"))
 
     def _away(self, prediction: PredictionResult | None) -> list[QTreeWidgetItem]:
         if prediction is None:
@@ -200,7 +200,7 @@ class ChecksPanel(QWidget):
                 "{share:.0f} % of the left-out points lie in the 90 % band; mean error {bias:+.2f} m"
             ).format(share=100 * left.inside, bias=left.bias)
             name = schemes.get(left.scheme, left.scheme)
-            rows.append(self._row(name, None, measured(left.rms, "m"), words=words, word=self.tr("for knowledge")))
+            rows.append(self._row(name, None, measured(left.rms, "m"), words=words, word=self.tr("for information")))
         return rows + [self._note(note) for note in gravest_first(prediction.notes)]
 
     def _conflicts(self, surface: HorizonFit, a: Accuracy) -> list[QTreeWidgetItem]:

@@ -236,7 +236,7 @@ class ControlPointPage(QWidget):
         for label, box, name in zip(self.directions, self.sideways, names, strict=True):
             label.setText(name)
             box.setAccessibleName(name)
-            box.setToolTip(self.tr("Move aside; the surface is then a height field no longer."))
+            box.setToolTip(self.tr("Move sideways; the surface is then no longer a height field."))
 
     def _reach(self) -> tuple[str, bool]:
         """Return what a move would change, and whether exact points forbid it."""
@@ -244,8 +244,8 @@ class ControlPointPage(QWidget):
         u0, u1, v0, v1 = support(self._surface, *self.target)
         within, exact = acted_on(self._surface, *self.target)
         words = self.tr(
-            "Moves the surface in a field of {width:.0f} m × {height:.0f} m around it, and nothing outside. "
-            "Data points there: {n}."
+            "Moves the surface within {width:.0f} m × {height:.0f} m around it, and nowhere else. Data points there: "
+            "{n}."
         ).format(width=u1 - u0, height=v1 - v0, n=int(within.sum()))
         if exact.any():
             words += "\n" + self.tr(

@@ -30,9 +30,7 @@ class DataPointPage(QWidget):
         self.share.setSuffix(self.tr(" %"))
         self.share.setAlignment(Qt.AlignmentFlag.AlignRight)
         self.share.setAccessibleName(self.tr("Share of the distance"))
-        self.share.setToolTip(
-            self.tr("100 % lets the surface pass through the point, 50 % takes half of the distance away.")
-        )
+        self.share.setToolTip(self.tr("100 % moves the surface through the point, 50 % halves its distance."))
         what = QLabel(
             self.tr(
                 "The control points around the point move as little as possible. Points that are met exactly stay "

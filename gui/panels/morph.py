@@ -104,7 +104,7 @@ class MorphPanel(QWidget):
         self.skin.setChecked(True)
         self.take, self.export = QPushButton(self.tr("Take as body…")), QPushButton(self.tr("Export frames…"))
         self.film = QPushButton(self.tr("Film of the view…"))
-        self.film.setToolTip(self.tr("GIF or MP4 of the whole way by the camera of the 3D view"))
+        self.film.setToolTip(self.tr("GIF or MP4 of all frames as seen in the 3D view"))
         self.where, self.note = QLabel(), QLabel(translated(GEOMETRY_ONLY))
         self.note.setWordWrap(True)
         self._lay_out()

@@ -52,7 +52,7 @@ class PlanPanel(QWidget):
             ("all", self.tr("All"), self.tr("Meet every point exactly.")),
             ("none", self.tr("None"), self.tr("Approximate all points.")),
             ("draw", self.tr("Draw"), self.tr("Draw a new rectangle: press and drag in the plan.")),
-            ("undo", self.tr("Undo drag"), self.tr("Take back the last drag that was not used yet.")),
+            ("undo", self.tr("Undo drag"), self.tr("Undo the last drag that has not been used yet.")),
             ("use", self.tr("Use"), self.tr("Make the rectangle the core of the next fit.")),
             ("area", self.tr("Study area"), self.tr("Draw the study area, or drag its corners.")),
             ("file area", self.tr("As in files"), self.tr("Use the study area given in the site's files.")),
@@ -237,5 +237,5 @@ class PlanPanel(QWidget):
             width=width, height=height, inside=inside, outside=total - inside
         )
         if widened:
-            words += " " + self.tr("The fit widens it to the edge of the area, where next to nothing lies between.")
+            words += " " + self.tr("The fit widens it to the edge of the area if almost no points lie between.")
         self.reason.setText(in_lengths(words) + " " + self.tr("Press Use to take it."))

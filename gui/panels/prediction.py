@@ -150,7 +150,9 @@ class PredictionPanel(QWidget):
             lines.append(
                 words.format(name=self._scheme(left.scheme), inside=100 * left.inside, raw=100 * left.inside_raw)
             )
-        self.figures.setText(in_lengths("\n".join(lines)) or self.tr("No figure could be found; the notes say why."))
+        self.figures.setText(
+            in_lengths("\n".join(lines)) or self.tr("No value could be found; the notes give the reason.")
+        )
 
     def _scheme(self, scheme: str) -> str:
         words = {
@@ -196,7 +198,7 @@ class PredictionPanel(QWidget):
                 self.tr("Mean after, m"), _of(holes, lambda hole: hole.mean_after), 2,
                 self.tr("Average standard deviation of the surface after this hole and those before it."),
             ),
-            TableColumn(self.tr("Most after, m"), _of(holes, lambda hole: hole.max_after), 2),
+            TableColumn(self.tr("Largest after, m"), _of(holes, lambda hole: hole.max_after), 2),
             TableColumn(self.tr("Easting, m"), _of(holes, lambda hole: hole.x), 1, coordinate=True),
             TableColumn(self.tr("Northing, m"), _of(holes, lambda hole: hole.y), 1, coordinate=True),
             TableColumn(self.tr("Elevation, m"), _of(holes, lambda hole: hole.z), 1),

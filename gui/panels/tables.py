@@ -28,11 +28,12 @@ from PySide6.QtCore import (
     Signal,
 )
 from PySide6.QtGui import QAction, QIcon, QKeySequence, QPalette, QResizeEvent
-from PySide6.QtWidgets import QAbstractItemView, QApplication, QFileDialog, QHeaderView, QMenu, QTableView, QWidget
+from PySide6.QtWidgets import QAbstractItemView, QApplication, QHeaderView, QMenu, QTableView, QWidget
 
 from geofit.data.files import replacing, spreadsheet_cell
 from geofit.gui.lengths import in_title, shown_coordinate, shown_length
 from geofit.gui.preferences import Preferences
+from geofit.gui.save_file import ask_save_file
 from geofit.gui.translate import translated
 from geofit.report.digits import typeset
 
@@ -374,11 +375,11 @@ class DataTable(QTableView):
         return stream.getvalue()
 
     def _ask_where(self) -> None:
-        path, _ = QFileDialog.getSaveFileName(
+        chosen = ask_save_file(
             self, self.tr("Export as CSV"), Preferences().folder, self.tr("Comma-separated values (*.csv)")
         )
-        if path:
-            self.export(path if path.lower().endswith(".csv") else f"{path}.csv")
+        if chosen is not None:
+            self.export(str(chosen[0]))
 
     def _open_menu(self, place: QPoint) -> None:
         if self.rows.rowCount():

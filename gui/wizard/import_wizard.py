@@ -27,6 +27,7 @@ from PySide6.QtWidgets import (
 
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.marks import icon
+from geofit.gui.save_file import ask_save_file
 from geofit.gui.translate import user_language
 from geofit.gui.wizard.draft import Draft, drafts_of, free_name, preview_again
 from geofit.gui.wizard.horizon_page import BuiltHorizon, HorizonPage
@@ -244,7 +245,7 @@ class ImportWizard(TaskDialog):
         elif not self._ready:
             self.say(self.tr("Every table is left out: there is nothing to read."))
         elif target.exists() and target not in self._made:
-            self.say(self.tr("{name} is there already, and will be written over.").format(name=target.name), "stale")
+            self.say(self.tr("{name} already exists and will be overwritten.").format(name=target.name), "stale")
         else:
             used = sum(draft.used for draft in self._drafts)
             self.say(self.tr("Ready. Tables that will be read: {count}.").format(count=used), "passed")
@@ -278,11 +279,9 @@ class ImportWizard(TaskDialog):
         self.add_files([Path(name) for name in names])
 
     def _browse(self) -> None:
-        path, _ = QFileDialog.getSaveFileName(
-            self, self.windowTitle(), self.target.text(), self.tr("Site files (*.toml)")
-        )
-        if path:
-            self.target.setText(path)
+        chosen = ask_save_file(self, self.windowTitle(), self.target.text(), self.tr("Site files (*.toml)"))
+        if chosen is not None:
+            self.target.setText(str(chosen[0]))
 
     def _target(self) -> Path:
         path = Path(self.target.text().strip()).expanduser()

@@ -208,7 +208,7 @@ class TablePage(QWidget):
         if draft.fault:
             return [failure(draft.fault), self.tr("This file is left out.")]
         if draft.kind == "":
-            return [self.tr("Nothing is known of these rows. Say what they are, or leave the table out.")]
+            return [self.tr("These rows were not recognised. State what they are, or leave the table out.")]
         if draft.kind == "skip":
             return [self.tr("This table is left out; its rows are listed as such.")]
         if not draft.named_kind:
@@ -226,7 +226,7 @@ class TablePage(QWidget):
             )
         ]
         if draft.remembered and not draft.changed:
-            notes.append(self.tr("Columns are named as the last time this header came."))
+            notes.append(self.tr("Columns are named as in the last table with this header."))
         if draft.kind == "intervals" and "from" not in draft.roles:
             notes.append(self.tr("No column contains upper limits: they are taken from the row above, 0 at the first."))
         if draft.kind == "picks" and "horizon" not in draft.roles:

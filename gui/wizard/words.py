@@ -17,7 +17,7 @@ _KINDS = {
     "section lines": QT_TRANSLATE_NOOP("Kind", "Section lines in plan"),
     "traces": QT_TRANSLATE_NOOP("Kind", "Map traces"),
     "picks": QT_TRANSLATE_NOOP("Kind", "Points (picks)"),
-    "horizon columns": QT_TRANSLATE_NOOP("Kind", "One column a horizon"),
+    "horizon columns": QT_TRANSLATE_NOOP("Kind", "One column per horizon"),
     "orientations": QT_TRANSLATE_NOOP("Kind", "Measured dips"),
     "boundary": QT_TRANSLATE_NOOP("Kind", "Study area"),
     "ground": QT_TRANSLATE_NOOP("Kind", "Ground surface (grid)"),

@@ -57,7 +57,7 @@ def test_a_picked_control_point_shows_its_place(panel, qtbot):
     x, y, z = patch.control[i, j] + fitted().origin
     assert f"At ({x:.1f}, {y:.1f}, {z:.2f})" in panel.control.about.text()
     assert panel.control.z.value() == pytest.approx(z, abs=1e-3)
-    assert "nothing outside" in panel.control.about.text()
+    assert "nowhere else" in panel.control.about.text()
     assert not panel.apply_button.isEnabled()
 
 

@@ -398,7 +398,7 @@ def test_a_saved_project_opens_with_its_bodies_and_tells_read_from_made_again(wi
     path = tmp_path / "dam.geofit"
     with_ore.window.files.save_to(path)
     with_ore.idle()
-    assert json.loads(path.read_text("utf-8"))["version"] == 3
+    assert json.loads(path.read_text("utf-8"))["version"] == 4
     seen = []
     with_ore.window.files.open(path)
     with_ore.document.bodies_changed.connect(lambda: seen.append(with_ore.document.body("ORE").origin))

@@ -280,7 +280,7 @@ def test_a_free_drag_goes_where_the_pointer_goes_in_the_plane_of_the_view(far):
     after = adjust(before, *control, dz, aside)
     ring = view.content(view.canvas.projector()).rings[0]
     assert f"{after.accuracy.sigma:.3g}"[:4] in ring.text
-    assert "aside" in ring.text
+    assert "sideways" in ring.text
     shape = view.control_move.drawn
     off = np.abs(after.surface.distance(shape.xyz))
     assert off.max() < 0.2 + 0.02 * np.linalg.norm(by)
@@ -344,4 +344,4 @@ def test_an_edit_aside_comes_back_after_saving_and_opening(far, tmp_path):
     provenance = far.document.state.provenances["H"]
     assert provenance.edits[-1].aside == (3.0, 0.0, 0.0)
     assert type(provenance).from_data(provenance.to_data()) == provenance
-    assert "aside" in str(far.desktop.session.stack.undoText())
+    assert "sideways" in str(far.desktop.session.stack.undoText())

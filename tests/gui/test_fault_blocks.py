@@ -228,7 +228,7 @@ def test_fit_all_parts_fits_and_measures(app, caplog):
     assert all(surface.accuracy.passed for surface in document.surfaces().values())
     assert any("F1 throws T2 down by" in record.getMessage() for record in caplog.records)
     steps = [stack.text(k) for k in range(stack.count())]
-    assert steps == ["Fit F1", "Part T2 at F1", "Fit T2 (A)", "Fit T2 (B)"]
+    assert steps == ["Fit F1", "Split T2 at F1", "Fit T2 (A)", "Fit T2 (B)"]
     # By hand a block is changed as any horizon is.
     document.select("T2 (B)")
     before = document.surface("T2 (B)")

@@ -273,7 +273,7 @@ def test_depths_named_as_elevations_are_told(qtbot, tmp_path):
     rested(qtbot, wizard)
     assert "Column 'depth' is not used" in wizard.page.message.text()
     name_column(wizard, 3, "z")
-    assert "is called a depth and is taken as an elevation" in wizard.page.message.text()
+    assert "is named as a depth but read as an elevation" in wizard.page.message.text()
     name_column(wizard, 2, "z")
     assert "Column 'depth' is not used" in wizard.page.message.text()
 
@@ -439,7 +439,7 @@ def test_cancel_takes_away_what_was_written_and_a_file_that_was_there_is_named_b
     (tmp_path / "own.toml").write_text("")
     again = opened(qtbot, tmp_path, tmp_path / "points.csv")
     again.target.setText(str(tmp_path / "own"))
-    assert "own.toml is there already" in again.message.text()
+    assert "own.toml already exists" in again.message.text()
     press(qtbot, again, again.go)
     again.reject()
     assert (tmp_path / "own.toml").exists()

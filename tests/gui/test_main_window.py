@@ -156,7 +156,7 @@ def test_leaving_asks_when_there_is_something_to_lose(app, small, monkeypatch):
 
     monkeypatch.setattr(QMessageBox, "exec", answer(QMessageBox.StandardButton.Cancel))
     app.window.close()
-    assert asked == ["Save the changes of Changed?"]
+    assert asked == ["Save the changes to Changed?"]
     assert app.window.isVisible()
     # Save, then close: the window goes when the file is there.
     project = small.with_name("small.geofit")

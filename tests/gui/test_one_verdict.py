@@ -206,7 +206,7 @@ def test_status_bar_and_log_record_every_step(shown):
     shown.window.session.stack.undo()
     assert bar.currentMessage().startswith("Undone: Exclude")
     shown.window.session.stack.redo()
-    assert bar.currentMessage().startswith("Done again: Exclude")
+    assert bar.currentMessage().startswith("Redone: Exclude")
     assert bar.currentMessage() in log.toPlainText()
     shown.window.session.stack.undo()
     shown.idle()

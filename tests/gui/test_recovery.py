@@ -8,17 +8,23 @@ import shutil
 import subprocess
 import sys
 import zlib
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.project.building import make
-from geofit.project.commands import MoveToPoint, RenameSite, SetSettings, SetSurface
+from geofit.project.commands import ExcludeRows, MoveToPoint, RenameSite, SetSettings, SetSurface
+from geofit.project.data_change import on_other_data
 from geofit.project.document import Document
 from geofit.project.journal import FORMAT, SessionJournal, unfinished
+from geofit.project.named_points import excluded_names
+from geofit.project.provenance import Row
+from geofit.project.state import State
 
 CHILD = Path(__file__).with_name("cut_off.py")
 KILLS = 60
@@ -183,6 +189,60 @@ def test_states_of_two_sessions_differ():
     assert sum(a != b for a, b in pairwise(found)) > 30
 
 
+def test_excluded_points_come_back_by_name_after_steps_that_were_undone_and_redone(tmp_path):
+    document = Document()
+    document.open(cut_off.tiny_site(), Path("site.toml"))
+    document.become(replace(document.state, excluded={"W": frozenset([Row("picks.csv", 3)])}))
+    read, base = document.read, document.state
+    journal = SessionJournal(
+        tmp_path, base, Path("site.toml"), Path("a.geofit"), State(), "ab12", excluded_names(base, read)
+    )
+    second = ExcludeRows("W", (Row("picks.csv", 7),))
+    second.redo(document)
+    journal.done(second, excluded_names(document.state, read))
+    journal.undone()
+    journal.redone()
+    (session,) = unfinished(killed(journal))
+    assert session.saved == State()
+    assert session.digest == "ab12"
+    assert session.names == excluded_names(document.state, read)
+    # A line was inserted above, and the point of row 7 was corrected.
+    points = read.horizons["W"]
+    xyz = points.xyz.copy()
+    xyz[5, 2] += 1.0
+    moved = PointSet(xyz, file="picks.csv", row=points.row + 1)
+    state, lost = on_other_data(session.final, session.names, replace(read, horizons={**read.horizons, "W": moved}))
+    assert state.excluded == {"W": {Row("picks.csv", 4)}}
+    assert [one.code for one in lost] == ["project.exclusion-lost"]
+
+
+def test_a_journal_of_version_1_keeps_rows_by_their_numbers_and_says_so(tmp_path):
+    data = line(head(version=1, state=Document().state.to_data())) + line({"do": RenameSite("x").to_data()})
+    (tmp_path / "session-1-0.journal").write_bytes(data)
+    (session,) = unfinished(tmp_path)
+    assert session.names == {}
+    site = replace(cut_off.tiny_site(), inputs={"picks.csv": "00"})
+    state = replace(State.of_site(site), excluded={"W": frozenset([Row("picks.csv", 7)])})
+    again, lost = on_other_data(state, session.names, site)
+    assert again.excluded == state.excluded
+    assert [one.code for one in lost] == ["project.exclusion-doubtful"]
+
+
+def test_a_journal_that_cannot_be_closed_is_removed_all_the_same(tmp_path, monkeypatch):
+    journal = SessionJournal(tmp_path, Document().state, None, None)
+
+    def full(handle):
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("os.fsync", full)
+        with pytest.raises(OSError, match="No space"):
+            journal.done(RenameSite("x"))
+    assert unfinished(tmp_path) == []
+    journal.end()
+    assert not journal.path.exists()
+
+
 def line(record):
     text = record if isinstance(record, bytes) else json.dumps(record).encode()
     return b"%08x " % zlib.crc32(text) + text + b"\n"
@@ -196,7 +256,7 @@ def head(**changes):
 @pytest.mark.parametrize(
     "data",
     [
-        line(head(version=2)),
+        line(head(version=3)),
         line(head(format="another")),
         b"0" + line(head())[1:],
         line(head()) + line({"undo": True}),

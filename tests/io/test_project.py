@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from contextlib import suppress
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from geofit.data.errors import InputError
 from geofit.data.files import replacing
 from geofit.data.settings import FitSettings
 from geofit.io import project as module
-from geofit.io.project import Edit, Project, ProjectSource, load_surfaces, open_project, save_project
+from geofit.io.project import Edit, Project, ProjectSource, is_project, load_surfaces, open_project, save_project
 
 VERSION_1 = """{"format": "geofit project", "version": 1, "name": "Old dam",
 "settings": {"T1": {"epsilon": 0.25, "conflict_distance": 0.05}},
@@ -123,14 +124,41 @@ def test_version_1_opens_under_the_names_of_today(tmp_path):
     assert provenance["edits"] == [{"kind": "separate"}]
 
 
+def test_version_3_opens_with_its_excluded_rows(tmp_path):
+    save_project(sample(), tmp_path / "dam.geofit")
+    data = json.loads((tmp_path / "dam.geofit").read_text("utf-8"))
+    (tmp_path / "old.geofit").write_text(json.dumps({**data, "version": 3}), encoding="utf-8")
+    assert open_project(tmp_path / "old.geofit") == open_project(tmp_path / "dam.geofit")
+
+
+def test_an_old_surface_that_another_program_has_open_stays_and_the_project_is_saved(tmp_path, monkeypatch):
+    first = save_project(sample(), tmp_path / "dam.geofit", {"T": horizon([fold()], name="T")})
+    remove = Path.unlink
+
+    def refused(path, missing_ok=False):
+        if path.suffix == ".step" and not path.name.startswith("."):
+            raise PermissionError(13, "The process cannot access the file", str(path))
+        remove(path, missing_ok=missing_ok)
+
+    monkeypatch.setattr(Path, "unlink", refused)
+    second = save_project(first, tmp_path / "dam.geofit", {"T": horizon(nine()[1], name="T")})
+    assert open_project(tmp_path / "dam.geofit") == second
+    assert (tmp_path / first.results[0].surface).is_file()
+
+
+@pytest.mark.parametrize(("name", "expected"), [("a.geofit", True), ("A.GEOFIT", True), ("site.toml", False)])
+def test_a_project_is_known_by_its_ending_whatever_its_case(name, expected):
+    assert is_project(Path(name)) is expected
+
+
 @pytest.mark.parametrize(
     ("text", "match"),
     [
         ('{"format": "geofit project", "version": 99, "anything": 1}', "newer geofit.*99.*Open it with"),
         ('{"format": "geofit project"}', "no version"),
         ('{"format": "geofit project", "version": true}', "no version"),
-        ('{"format": "other"}', "does not say"),
-        ("[1, 2]", "does not say"),
+        ('{"format": "other"}', "does not state the format 'geofit project'"),
+        ("[1, 2]", "does not state the format 'geofit project'"),
         ("GOCAD TSurf 1", "not a valid project file"),
         ("[" * 100_000, "not a valid project file"),
         ('{"format": "geofit project", "version": 2}', "name"),

@@ -216,7 +216,7 @@ BROKEN_SITES = {
         'name = "fault"',
         ["'fault'", "no point"],
     ),
-    "one name twice": ('name = "weathering"', 'name = "T2-T1"', ["one name"]),
+    "one name twice": ('name = "weathering"', 'name = "T2-T1"', ["the same name"]),
     "no collar": ('collar = "collar.csv"\n', "", ["collar"]),
     "not valid TOML": ("[traces]", "[traces", ["TOML", "row 21"]),
     "separator of two characters": (

@@ -92,3 +92,21 @@ def test_an_unknown_ending_names_the_known_ones(upper, tmp_path):
 def test_options_are_keywords():
     parameters = inspect.signature(geofit.write_surface).parameters.values()
     assert [one.name for one in parameters if one.kind is not one.KEYWORD_ONLY] == ["surfaces", "path"]
+
+
+@pytest.mark.parametrize("ending", [".dxf", ".step", ".vtm", ".obj"])
+def test_a_file_in_place_of_a_folder_is_the_fault_and_no_default(ending, tmp_path):
+    (tmp_path / "file").write_text("")
+    surface = geofit.fit_horizon(geofit.PointSet([[0, 0, 1.0], [9, 0, 2.0], [0, 9, 3.0], [9, 9, 4.0]]), name="a")
+    with pytest.raises(InputError) as caught:
+        geofit.write_surface(surface, tmp_path / "file" / f"a{ending}", crs="")
+    assert caught.value.code == "data.folder-not-made"
+
+
+def test_a_default_that_is_given_is_not_blamed_for_another_error(upper, tmp_path, monkeypatch):
+    def broken(*_, **__):
+        raise RuntimeError("of a library")
+
+    monkeypatch.setattr("geofit.io.export.dxf.write_contours_dxf", broken)
+    with pytest.raises(RuntimeError, match="of a library"):
+        geofit.write_surface(upper, tmp_path / "a.dxf", format="", crs="", interval=20.0)

@@ -97,7 +97,7 @@ def test_a_project_without_bodies_keeps_its_version_and_has_no_word_of_them(tmp_
 def test_bodies_come_back_with_what_they_were_made_from(tmp_path, site, ore):
     path, state = saved(tmp_path, site, {"ORE": ore})
     data = json.loads(path.read_text("utf-8"))
-    assert data["version"] == VERSION == 3
+    assert data["version"] == VERSION == 4
     (entry,) = data["bodies"]
     assert entry["sigma"] == pytest.approx(ore[1].accuracy.sigma)
     assert entry["volumes"]["p90"] == ore[1].volumes.p90

@@ -92,7 +92,7 @@ def test_grids_stand_at_multiples_of_the_cell(upper):
     ("options", "match"),
     [
         ({"cell": 0.0}, "above 0"),
-        ({"cell": 5000.0}, "leaves no grid"),
+        ({"cell": 5000.0}, "are too large"),
         ({"cell": 1e-4}, "cells"),
         ({"value": "dip"}, "unknown"),
     ],

@@ -14,8 +14,9 @@ from geofit.project.adding import add_files
 from geofit.project.building import make
 from geofit.project.commands import ExcludeRows, SetSurface
 from geofit.project.comparing import compare_states, made_comparison, state_surfaces
-from geofit.project.data_change import carried_rows, change_of_data, changed_files
+from geofit.project.data_change import change_of_data, changed_files
 from geofit.project.document import Document
+from geofit.project.named_points import found_again, named_rows
 from geofit.project.provenance import Row
 from geofit.project.saving import read_project, save_state
 
@@ -104,10 +105,8 @@ def test_of_two_points_at_one_place_the_right_one_stays_excluded(site_file):
     before = read_site(site_file).horizons[NAME]
     written(site_file.parent, [lines[9], *lines[:9], lines[3]])
     after = read_site(site_file).horizons[NAME]
-    found, lost = carried_rows([Row("picks.csv", 12)], before, after)
-    assert (found, lost) == ((Row("picks.csv", 12),), ())
-    found, lost = carried_rows([Row("picks.csv", 5)], before, after)
-    assert (found, lost) == ((Row("picks.csv", 6),), ())
+    for row, now in ((Row("picks.csv", 12), Row("picks.csv", 12)), (Row("picks.csv", 5), Row("picks.csv", 6))):
+        assert found_again(named_rows([row], before), after) == {row: now}
 
 
 def test_the_change_is_undone_and_redone_and_the_earlier_surface_made_again(site_file):
