@@ -119,7 +119,7 @@ def test_no_horizons_are_apart():
 
 
 def test_a_form_of_report_that_is_unknown_is_refused(fit, tmp_path):
-    with pytest.raises(SettingsError, match="A report as 'docx' is unknown; choose html, pdf, json") as told:
+    with pytest.raises(SettingsError, match="The report format 'docx' is unknown; choose html, pdf, json") as told:
         geofit.write_report(fit, tmp_path / "report", forms=["docx"])
     assert told.value.code == "project.report-form-unknown"
     assert not (tmp_path / "report").exists()

@@ -104,9 +104,9 @@ def oscillation(
         return Check("oscillation", True, value, limit, "m", partly(text, len(chosen), given))
     text = message(
         "checks.surface-oscillates",
-        "the surface oscillates between the points: at {x:.0f}, {y:.0f} by {value:.1f} m from "
-        "what those around support ({limit:.1f} m allowed), and so at {count} of {n} places; a "
-        "point there may be wrong, or the tolerance finer than the data",
+        "the surface oscillates between the points: at {x:.0f}, {y:.0f} it departs by {value:.1f} m from what the "
+        "points around support ({limit:.1f} m allowed); this happens at {count} of {n} places; a point there may be "
+        "wrong, or the tolerance finer than the data",
         count=len(beyond),
         n=len(off),
         **figures,

@@ -184,7 +184,7 @@ def _clustering(xyz: Floats, d: Floats, tolerance: float) -> Check:
         text = message(
             "checks.residuals-correlated",
             "residuals of neighbours agree: a pattern of about {value:.2f} m that the surface does not follow "
-            "(Moran's I {moran:.2f}, z {z:.1f}); more control points, or a source that is off as a whole",
+            "(Moran's I {moran:.2f}, z {z:.1f}); add control points, or look for a source with a systematic offset",
             value=value,
             **figures,
         )
@@ -241,8 +241,8 @@ def _normality(d: Floats, tolerance: float) -> Check:
         # Shorter tails than a normal law has: what the tolerance cuts off, and nobody's blunder.
         text = message(
             "checks.residuals-at-tolerance",
-            "not judged: most residuals lie at the interior tolerance, where the fit stops; the normal plot leaves its "
-            "line by {off:.0%} for that",
+            "not judged: most residuals lie at the interior tolerance, where the fit stops; this takes the normal "
+            "plot {off:.0%} off its line",
             off=off,
         )
         return Check(name, None, off, limit, "", text)

@@ -188,8 +188,8 @@ def _strip(surface: FittedSurface, parts: Sequence[PatchLattice]) -> list[Check]
         return []
     text = message(
         "checks.points-along-a-line",
-        "the points lie along one line: {along:.1f} m long, {across:.1f} m wide; the surface is {wide:.1f} m wide, and "
-        "aside from the line nothing is known of it",
+        "the points lie along one line: {along:.1f} m long, {across:.1f} m wide; the surface is {wide:.1f} m wide, "
+        "and away from the line nothing is known of it",
         along=along,
         across=across,
         wide=wide,

@@ -311,7 +311,7 @@ def _model(surface: HorizonFit) -> Model:
         raise FitError(
             message(
                 "prediction.surface-not-fitted",
-                "'{name}' was not fitted here: nothing is known about what lies between its points.",
+                "'{name}' was not fitted here, so its uncertainty between the points is unknown. Fit it first.",
                 name=surface.name,
             )
         )

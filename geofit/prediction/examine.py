@@ -216,7 +216,7 @@ def _examine_folded(surface: HorizonFit, model: Model, progress: Progress | None
         notes.append(
             message(
                 "prediction.fold-not-calibrated",
-                "no section was left out: the standard deviation is what the fit expects, held to no error",
+                "no section was left out: the standard deviation is what the fit expects, and is not calibrated",
             )
         )
     tell(progress, "next holes", 0.95)
@@ -286,7 +286,7 @@ def _left_out(
         notes.append(
             message(
                 "prediction.too-many-points-for-groups",
-                "{count} points are too many to leave out in groups: each is left out alone, of the regional field, "
+                "{count} points are too many to leave out in groups: each is left out alone from the regional field, "
                 "and no other method is compared",
                 count=len(given.value),
             )

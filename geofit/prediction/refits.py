@@ -120,7 +120,7 @@ def sections_by_refit(
         notes.append(
             message(
                 "prediction.errors-across-sections",
-                "errors are distances from the surface through the other sections; the outermost two stay",
+                "errors are distances from the surface through the other sections; the outermost two are not left out",
             )
         )
     noise = np.full(len(point), model.net.field.noise**2)

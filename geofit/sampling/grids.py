@@ -89,7 +89,7 @@ def _grid(box: tuple[Floats, Floats], cell: float | None, value: Callable[[Float
         raise SettingsError(
             message(
                 "sampling.cell-larger-than-surface",
-                "A cell of {step:g} m leaves no grid; the surface is {width:.1f} m wide.",
+                "Cells of {step:g} m are too large: the surface is {width:.1f} m wide. Give a smaller size.",
                 step=step,
                 width=(high - low).min(),
             )

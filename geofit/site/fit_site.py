@@ -288,7 +288,7 @@ def _separate_horizons(site: Site, found: SiteFit) -> None:
         found.warnings += (
             message(
                 "site.order-names-no-pair",
-                "not separated: the order of the site names no two fitted horizons without a fault",
+                "not separated: the order of the site names fewer than two fitted horizons without a fault",
             ).with_severity("warning"),
         )
         return

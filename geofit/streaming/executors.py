@@ -213,8 +213,8 @@ def _lost(scheduler: str, ready: int, total: int) -> SchedulerError:
     return SchedulerError(
         message(
             "streaming.scheduler-lost",
-            "The scheduler at {scheduler} or its workers are lost; {ready} of {total} tasks were ready. Start the same "
-            "command again: it goes on with the others.",
+            "The connection to the scheduler at {scheduler} or its workers was lost; {ready} of {total} tasks were "
+            "ready. Start the same command again to continue with the others.",
             scheduler=scheduler,
             ready=ready,
             total=total,

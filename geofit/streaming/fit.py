@@ -225,7 +225,7 @@ def _frame(xyz: Rows, low: Floats, high: Floats, settings: FitSettings, boundary
         raise FitError(
             message(
                 "streaming.cloud-without-sections",
-                "frame='sections' needs named sections, which a cloud has not. Choose 'map' or 'best-plane'.",
+                "frame='sections' needs named sections, which a cloud does not have. Choose 'map' or 'best-plane'.",
             )
         )
     if kind == "best-plane" or (kind == "auto" and dip >= STEEP):

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.files import replacing
+from geofit.data.files import folder_for, replacing
 from geofit.data.progress import Progress, tell
 from geofit.geometry.projection import project
 from geofit.streaming.executors import run_tasks
@@ -163,7 +163,7 @@ def measure(
         np.empty((0, 3)), 0, 0, surface, (tolerance, epsilon), REACH * noise, box, (shape[0], shape[1]), folder
     )
     if folder is not None:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder_for(folder)
     tasks, found = [], dict[int, Residuals]()
     for start in range(0, n, PART):
         task = replace(blank, start=start, stop=min(start + PART, n), stem=f"part-{start // PART:06d}")

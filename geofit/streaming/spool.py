@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.files import cannot_write, replacing
+from geofit.data.files import cannot_write, folder_for, replacing
 from geofit.data.long_arrays import LongArray
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
@@ -72,7 +72,7 @@ def spooled(
     Cancelled
         If ``progress`` returned False; what was read stays.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    folder_for(folder)
     path, state = folder / "points.f64", folder / "points.json"
     tag = hashlib.sha256(key.encode()).hexdigest()
     known = _state(state, tag)
