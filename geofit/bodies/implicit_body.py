@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING, Any, ClassVar, Unpack
+from typing import TYPE_CHECKING, ClassVar, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,7 +21,7 @@ from geofit.implicit.mesh import TriangleMesh
 from geofit.implicit.volume import Extent, curved_extent
 
 if TYPE_CHECKING:
-    from geofit.bodies.cut import BodyPiece
+    from geofit.bodies.cut import BodyPiece, CuttingSurface
     from geofit.cad.solid_read_back import SolidReadBack
     from geofit.cad.step_origin import StepFields
     from geofit.implicit.field import Field
@@ -121,7 +121,7 @@ class ImplicitBody:
         return Extent(fine.volume, fine.area, *off)
 
     def value(self, xyz: ArrayLike) -> Floats:
-        """Return the field (n,) at (n, 3) places: negative inside; near the surface about the distance in metres."""
+        """Return the field (n,) at (n, 3) places: negative inside; metres are what :meth:`distance` gives."""
         return self.field.value(self._local(xyz))
 
     def gradient(self, xyz: ArrayLike) -> Floats:
@@ -132,7 +132,14 @@ class ImplicitBody:
         """Return the signed orthogonal distance (n,) of (n, 3) places to the surface, metres, positive outside."""
         from geofit.bodies.distance import body_distance
 
-        return body_distance(self.field, self._local(xyz), self.spacing, lambda: self.overview)
+        return body_distance(self.field, self._local(xyz), self.spacing, lambda: self._wall)
+
+    @cached_property
+    def _wall(self) -> TriangleMesh:
+        """The overview without caps: where the body ends at a side of its box, that side is not part of its surface."""
+        from geofit.bodies.distance import wall_of
+
+        return wall_of(self.field, self.overview, self.spacing)
 
     def triangulate(self, spacing: float | None = None) -> TriangleMesh:
         """Return the surface as a closed triangle mesh in map coordinates.
@@ -179,9 +186,13 @@ class ImplicitBody:
                     least=longest / self.most_cells,
                 )
             )
-        return isosurface(self.field, self._lattice(spacing), capped=True)
+        return self._mesh_of_cells(spacing)
 
-    def cut(self, surfaces: Mapping[str, Any] | Sequence[Any], spacing: float | None = None) -> tuple[BodyPiece, ...]:
+    def cut(
+        self,
+        surfaces: Mapping[str, CuttingSurface] | Sequence[CuttingSurface] | CuttingSurface,
+        spacing: float | None = None,
+    ) -> tuple[BodyPiece, ...]:
         """Return the closed pieces into which surfaces cut the body; see :func:`geofit.bodies.cut.cut_body`."""
         from geofit.bodies.cut import cut_body
 
@@ -206,12 +217,13 @@ class ImplicitBody:
 
         return write_solid(self, path, **stated) if nurbs else write_body(self, path, **stated)
 
-    def _lattice(self, spacing: float) -> Lattice:
-        """Return the nodes of a mesh: the body's box, and two cells around it."""
+    def _mesh_of_cells(self, spacing: float) -> TriangleMesh:
+        """Return triangles from cubes of an edge that cover the body's box, and two more around it."""
         lower, upper = self.extent
         counts = np.maximum(np.ceil((upper - lower) / spacing).astype(int), 1) + 4
         start = (lower + upper) / 2 - counts * spacing / 2
-        return Lattice(start, spacing, (int(counts[0]) + 1, int(counts[1]) + 1, int(counts[2]) + 1))
+        lattice = Lattice(start, spacing, (int(counts[0]) + 1, int(counts[1]) + 1, int(counts[2]) + 1))
+        return isosurface(self.field, lattice, capped=True)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name}>"

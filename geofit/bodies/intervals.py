@@ -69,7 +69,7 @@ def as_body_data(source: BodyData | Any, codes: str | Sequence[str] | None, sett
             raise SettingsError(
                 message(
                     "bodies.codes-without-logs",
-                    "codes choose logged intervals; arrays have none. Leave codes away, or give boreholes with logs.",
+                    "codes choose logged intervals; arrays have none. Leave codes out, or give boreholes with logs.",
                 )
             )
         return source

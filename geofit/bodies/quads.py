@@ -176,8 +176,8 @@ def fit_part(
         raise FitError(
             message(
                 "bodies.part-without-layout",
-                "Layout of patches: no raster of at most {most} quadrilaterals has all branches, necks and holes of "
-                "{which}: it is thin or ragged against the cells of its triangles, and only they follow it.",
+                "Layout of patches: no raster of at most {most} quadrilaterals follows all branches, necks and holes "
+                "of {which}: it is thin or ragged compared with its triangles, and only triangles follow it.",
                 most=part.most,
                 which=which,
             )

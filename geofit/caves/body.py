@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Literal, Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,9 +25,6 @@ from geofit.caves.sweeps import Sweeps
 from geofit.data.errors import SettingsError
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
-
-if TYPE_CHECKING:
-    from geofit.implicit.mesh import TriangleMesh
 
 __all__ = ["Ends", "PassageBody", "centreline_body"]
 
@@ -117,10 +114,10 @@ class PassageBody(OwnField):
         """The spacing that resolves the narrowest passages, metres."""
         return self.fine
 
-    @cached_property
-    def overview(self) -> TriangleMesh:
-        """Closed triangles that resolve most passages; those thinner than :attr:`fine` may be lost."""
-        return self.local_mesh(self.fine)
+    @property
+    def overview_spacing(self) -> float:
+        """Edge of the overview's cells, metres: it resolves most passages; those thinner than it may be lost."""
+        return self.fine
 
     def thinner_than(self, spacing: float) -> tuple[tuple[str, str], ...]:
         """Return the shots whose section is somewhere thinner than a spacing: triangles and volumes may lose them."""
@@ -134,7 +131,7 @@ class PassageBody(OwnField):
     def columns(self, spacing: float | None = None) -> Columns:
         """Return the body as vertical intervals on a grid in plan, for volumes (:mod:`geofit.caves.columns`)."""
         step = _spacing(spacing if spacing is not None else self.fine)
-        return columns(self.sweeps, self.blend, self.boxes, step)
+        return columns(self._cells, self.boxes, step)
 
     def volume(self, spacing: float | None = None) -> float:
         """Return the volume in cubic metres; overlaps of passages count once."""

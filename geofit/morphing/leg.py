@@ -19,7 +19,7 @@ from geofit.morphing.arrival import arrival, source_field
 from geofit.morphing.distance import Samples, both_distances, distances, front_distances
 from geofit.morphing.errors import MorphError
 from geofit.morphing.parts import SEED, LonePart, isolated_parts, with_seeds, without_parts
-from geofit.morphing.paths import Line, Path, level_set_path, quick_surface, samples_at
+from geofit.morphing.paths import BLOCK, Line, Path, level_set_path, quick_surface, samples_at
 
 __all__ = ["Leg", "Mode", "Pace", "leg_between"]
 
@@ -28,11 +28,11 @@ Mode = Literal["arrival", "blend", "pde"]
 Pace = Literal["progress", "volume", "time"]
 
 #: Shares of the way at which the pace is tabled; between them it is linear.
-TABLED = 257
+TABLED = 33
 #: A frame's field is kept within this many spacings: a spline would swing next to larger steps.
 KEPT = 8.0
-#: Corrections of a share by the volume of its surface.
-SECANTS = 4
+#: A share is found by its volume to this.
+FOUND = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,28 +73,38 @@ class Leg:
 
     @cached_property
     def _tabled(self) -> tuple[Floats, Floats, Floats]:
-        """Shares s (k,), volume joined (k,) and left (k,) up to each, from the nodes, m3."""
+        """Shares s (k,), and the volume that joined (k,) and left (k,) the first frame up to each, m3."""
+        from geofit.morphing.look_loops import block_spans, joint_volumes
+
         s = np.linspace(0, 1, TABLED)
-        join, leave = self.path.crossings()
+        (first, *_), (_, last, _) = self.path.between(0.0), self.path.between(1.0)
+        # Frames stay between both ends: where these agree, nothing changes.
+        blocks, *_ = block_spans(first, last, BLOCK)
+        frames = (self.path.between(one) for one in s.tolist())
+        union, common = np.transpose([joint_volumes(*frame, first, blocks, BLOCK) for frame in frames])
         cell = self.lattice.spacing**3
-        joined, left = (np.asarray(np.searchsorted(times, s, "right") * cell) for times in (join, leave))
-        return s, joined, left
+        return s, (union - union[0]) * cell, (common[0] - common) * cell
 
     def progress(self, s: float) -> float:
         """Return the share of the symmetric difference of the ends that is done at share s."""
-        tabled, joined, left = self._tabled
-        done = joined + left
-        return float(np.interp(s, tabled, done / done[-1] if done[-1] > 0 else tabled))
+        tabled, done = self._done
+        return float(np.interp(s, tabled, done))
 
     def share_at_progress(self, p: float) -> float:
         """Return the share s at which a share p of the symmetric difference is done."""
+        tabled, done = self._done
+        return float(np.interp(p, done, tabled))
+
+    @property
+    def _done(self) -> tuple[Floats, Floats]:
+        """Shares s (k,) and the share of the symmetric difference that is done at each, rising from 0 to 1."""
         tabled, joined, left = self._tabled
-        done = joined + left
-        if done[-1] == 0:
-            return float(p)
+        done = np.maximum.accumulate(joined + left)
+        if done[-1] <= 0:
+            return tabled, tabled
         # Flat parts would have no inverse: a trace of s itself keeps it.
         steady = done / done[-1] + 1e-9 * tabled
-        return float(np.interp(p, steady / steady[-1], tabled))
+        return tabled, steady / steady[-1]
 
     def share_at_volume(self, p: float) -> float:
         """Return the share s at which the volume is (1 - p) V_A + p V_B.
@@ -104,26 +114,23 @@ class Leg:
         MorphError
             If the volume does not rise or fall all the way.
         """
-        tabled, joined, left = self._tabled
-        net = joined - left
-        change = net[-1]
-        if abs(change) <= self.lattice.spacing**3:
+        from scipy.optimize import brentq
+
+        ends = self._end_volumes
+        change = ends[1.0] - ends[0.0]
+        _, joined, left = self._tabled
+        if abs(change) <= self.lattice.spacing**3 or (np.diff(joined - left) / change < -0.002).any():
             raise self._not_monotone()
-        done = net / change
-        if (np.diff(done) < -0.002).any():
-            raise self._not_monotone()
-        steady = np.maximum.accumulate(done) + 1e-9 * tabled
-        s = float(np.interp(p, steady / steady[-1], tabled))
-        wanted = (1 - p) * self.volume(0.0) + p * self.volume(1.0)
-        for _ in range(SECANTS):
-            off = self.volume(s) - wanted
-            slope = (np.interp(s + 0.01, tabled, net) - np.interp(s - 0.01, tabled, net)) / (
-                min(s + 0.01, 1.0) - max(s - 0.01, 0.0)
-            )
-            if slope * change <= 0:
-                break
-            s = float(np.clip(s - off / slope, 0.0, 1.0))
-        return s
+        wanted = ends[0.0] + p * change
+
+        def off(s: float) -> float:
+            return (ends[s] if s in ends else self.volume(s)) - wanted
+
+        return float(brentq(off, 0.0, 1.0, xtol=FOUND))
+
+    @cached_property
+    def _end_volumes(self) -> dict[float, float]:
+        return {s: self.volume(s) for s in (0.0, 1.0)}
 
     def _not_monotone(self) -> MorphError:
         return MorphError(

@@ -1,4 +1,4 @@
-"""Compiled: a frame between two stored fields: its blocks with surface, its volume, and when nodes change sides."""
+"""Compiled: a frame between two stored fields: its blocks with surface, its volume, and what it shares with another."""
 
 from __future__ import annotations
 
@@ -6,10 +6,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-__all__ = ["block_spans", "cell_fractions", "crossing_shares", "gather_blocks", "mixed_blocks", "tetrahedra_volume"]
+__all__ = ["block_spans", "cell_fractions", "gather_blocks", "joint_volumes", "mixed_blocks", "tetrahedra_volume"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Singles = NDArray[np.float32]
+
+#: Corners of the six tetrahedra of a cell between its corners 0 and 7; corner 4 a + 2 b + c is at (a, b, c).
+TETRAHEDRA = ((4, 6), (4, 5), (2, 6), (2, 3), (1, 5), (1, 3))
 
 
 @njit(cache=True)
@@ -101,26 +105,6 @@ def gather_blocks(
 
 
 @njit(cache=True)
-def crossing_shares(first: NDArray[np.float32], last: NDArray[np.float32]) -> tuple[Floats, Floats]:
-    """Return the shares s at which nodes join the body (n,) and leave it (m,), not sorted."""
-    a, b = first.ravel(), last.ravel()
-    joins = leaves = 0
-    for n in range(a.size):
-        joins += a[n] >= 0 and b[n] < 0
-        leaves += a[n] < 0 and b[n] >= 0
-    join, leave = np.empty(joins), np.empty(leaves)
-    joins = leaves = 0
-    for n in range(a.size):
-        if a[n] >= 0 and b[n] < 0:
-            join[joins] = a[n] / (a[n] - b[n])
-            joins += 1
-        elif a[n] < 0 and b[n] >= 0:
-            leave[leaves] = a[n] / (a[n] - b[n])
-            leaves += 1
-    return join, leave
-
-
-@njit(cache=True)
 def _passed(f: NDArray[np.floating], i: int, j: int, k: int) -> bool:
     """Return whether a node and the 26 around it are on both sides: else no plane cuts the cube about the node."""
     nx, ny, nz = f.shape
@@ -158,29 +142,38 @@ def cell_fractions(f: NDArray[np.floating], h: float) -> NDArray[np.float32]:
 
 
 @njit(cache=True)
-def _tetrahedron(f0: float, f1: float, f2: float, f3: float) -> float:
+def _tetrahedron(a: float, b: float, c: float, d: float) -> float:
     """Part of a tetrahedron on which a linear function with these values at its corners is negative."""
-    f = np.sort(np.array([f0, f1, f2, f3]))
-    if f[0] >= 0:
+    a, b, c, d = min(a, b), max(a, b), min(c, d), max(c, d)
+    a, c, b, d = min(a, c), max(a, c), min(b, d), max(b, d)
+    b, c = min(b, c), max(b, c)
+    if a >= 0:
         return 0.0
-    if f[3] < 0:
+    if d < 0:
         return 1.0
-    if f[1] >= 0:
-        return float(f[0] ** 3 / ((f[0] - f[1]) * (f[0] - f[2]) * (f[0] - f[3])))
-    if f[2] >= 0:
-        p, q = f[0] / (f[0] - f[2]), f[0] / (f[0] - f[3])
-        r, s = f[1] / (f[1] - f[2]), f[1] / (f[1] - f[3])
+    if b >= 0:
+        return float(a**3 / ((a - b) * (a - c) * (a - d)))
+    if c >= 0:
+        p, q = a / (a - c), a / (a - d)
+        r, s = b / (b - c), b / (b - d)
         return float(p * q + q * r * (1 - p) + r * s * (1 - q))
-    return float(1 - f[3] ** 3 / ((f[3] - f[0]) * (f[3] - f[1]) * (f[3] - f[2])))
+    return float(1 - d**3 / ((d - a) * (d - b) * (d - c)))
+
+
+@njit(cache=True)
+def _cell(f: Floats) -> float:
+    """Part of a cell on which samples at its eight corners, linear in six tetrahedra, are negative."""
+    total = 0.0
+    for second, third in TETRAHEDRA:
+        total += _tetrahedron(f[0], f[second], f[third], f[7]) / 6
+    return total
 
 
 @njit(cache=True)
 def tetrahedra_volume(f: NDArray[np.floating]) -> float:
     """Return the volume, in cells, on which samples linear in six tetrahedra a cell are negative."""
     nx, ny, nz = f.shape
-    orders = np.array([[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]])
-    place = np.empty(3, np.int64)
-    corner = np.empty(4)
+    corner = np.empty(8)
     total = 0.0
     for i in range(nx - 1):
         for j in range(ny - 1):
@@ -195,11 +188,52 @@ def tetrahedra_volume(f: NDArray[np.floating]) -> float:
                 if count == 8:
                     total += 1.0
                     continue
-                for m in range(6):
-                    place[0], place[1], place[2] = i, j, k
-                    corner[0] = f[i, j, k]
-                    for n in range(3):
-                        place[orders[m, n]] += 1
-                        corner[n + 1] = f[place[0], place[1], place[2]]
-                    total += _tetrahedron(corner[0], corner[1], corner[2], corner[3]) / 6
+                for n in range(8):
+                    corner[n] = f[i + n // 4, j + n // 2 % 2, k + n % 2]
+                total += _cell(corner)
     return total
+
+
+@njit(cache=True)
+def joint_volumes(
+    first: Singles, last: Singles, s: float, other: Singles, blocks: Ints, block: int
+) -> tuple[float, float]:
+    """Return the volumes, in cells, of the union and of the common part of (1 - s) first + s last and another body.
+
+    Only cells of the given blocks count. Samples are linear in six tetrahedra a cell, so what lies between two bodies
+    counts where it is thinner than a cell, too.
+    """
+    nx, ny, nz = first.shape
+    p, q = np.float32(1 - s), np.float32(s)
+    low, high = np.empty(8), np.empty(8)
+    union = common = 0.0
+    for n in range(len(blocks)):
+        x, y, z = blocks[n]
+        x_end, y_end, z_end = min(x + block, nx - 1), min(y + block, ny - 1), min(z + block, nz - 1)
+        own = others = 0
+        for i in range(x, x_end + 1):
+            for j in range(y, y_end + 1):
+                for k in range(z, z_end + 1):
+                    own += p * first[i, j, k] + q * last[i, j, k] < 0
+                    others += other[i, j, k] < 0
+        nodes = (x_end - x + 1) * (y_end - y + 1) * (z_end - z + 1)
+        if own in (0, nodes) and others in (0, nodes):
+            cells = (x_end - x) * (y_end - y) * (z_end - z)
+            union += cells if own + others > 0 else 0
+            common += cells if own + others == 2 * nodes else 0
+            continue
+        for i in range(x, x_end):
+            for j in range(y, y_end):
+                for k in range(z, z_end):
+                    either = both = 0
+                    for c in range(8):
+                        at = i + c // 4, j + c // 2 % 2, k + c % 2
+                        value = p * first[at] + q * last[at]
+                        low[c], high[c] = min(value, other[at]), max(value, other[at])
+                        either += low[c] < 0
+                        both += high[c] < 0
+                    if either > 0:
+                        union += 1.0 if either == 8 else _cell(low)
+                    if both > 0:
+                        common += 1.0 if both == 8 else _cell(high)
+    return union, common

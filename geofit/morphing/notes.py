@@ -6,14 +6,17 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geofit.data.messages import Message, message
 
 if TYPE_CHECKING:
-    from geofit.implicit.mesh import TriangleMesh
+    from geofit.morphing.distance import Samples
     from geofit.morphing.sequence import Morph
 
 __all__ = ["notes"]
+
+Floats = NDArray[np.float64]
 
 #: Spacings across a part below which its volume by the lattice is off by more than a few per cent.
 ACROSS = 6.0
@@ -30,7 +33,7 @@ def notes(morph: Morph) -> tuple[Message, ...]:
     found = [_turned(end.name) for end in morph.ends if end.turned]
     bodies = [morph.legs[0].start, *(leg.end for leg in morph.legs)]
     for end, body in zip(morph.ends, bodies, strict=True):
-        if (across := _thinnest(body.mesh)) < ACROSS * body.lattice.spacing:
+        if (across := _thinnest(body)) < ACROSS * body.lattice.spacing:
             found.append(_coarse(end.name, across, body.lattice.spacing))
     for leg, change, (first, last) in zip(morph.legs, morph.changes, pairwise(morph.ends), strict=True):
         before, after = leg.start.mesh.volume, leg.end.mesh.volume
@@ -74,10 +77,43 @@ def _coarse(name: str, across: float, spacing: float) -> Message:
     ).with_severity("warning")
 
 
-def _thinnest(mesh: TriangleMesh) -> float:
-    """Return the least thickness of the parts of a mesh, 6 V / A: the diameter of a ball, the edge of a cube."""
-    part = mesh.component_of
+def _thinnest(body: Samples) -> float:
+    """Return the least thickness of the parts of a body: the diameter of the largest ball within each, metres.
+
+    For parts of six spacings or more a bound from below.
+    """
+    from geofit.morphing.triangle_loops import spread_triangles
+
+    mesh, lattice = body.mesh, body.lattice
     cones = ((mesh.corners.mean(axis=1) - mesh.vertices.mean(axis=0)) * mesh.area_vectors).sum(axis=1) / 3
-    volume, area = np.abs(np.bincount(part, cones)), np.bincount(part, mesh.areas)
-    large = volume > SPECK * volume.max()
-    return float((6 * volume[large] / area[large]).min(initial=np.inf))
+    volume, area = np.bincount(mesh.component_of, cones), np.bincount(mesh.component_of, mesh.areas)
+    # A plate is as thick as this, and all others are thicker, a ball three times.
+    thick = 2 * np.abs(volume) / np.maximum(area, 1e-300)
+    doubtful = (np.abs(volume) > SPECK * np.abs(volume).max(initial=0.0)) & (thick < ACROSS * lattice.spacing)
+    if not doubtful.any():
+        return np.inf
+    places = (mesh.vertices - lattice.origin) / lattice.spacing
+    nowhere = np.zeros(body.inside.size, bool)
+    depth, nearest = spread_triangles(places, mesh.triangles, lattice.shape, nowhere, ACROSS / 2 + 1)
+    part = np.where(nearest >= 0, mesh.component_of[nearest], -1)
+    for k in np.flatnonzero(doubtful).tolist():
+        # A cavity is a part, too: its nodes are outside.
+        nodes = np.flatnonzero((part == k) & (body.inside.ravel() == (volume[k] > 0)))
+        if len(nodes):
+            middle = np.array(np.unravel_index(nodes[np.argmax(depth[nodes])], lattice.shape), float)
+            thick[k] = 2 * lattice.spacing * _depth(middle, places[mesh.triangles[mesh.component_of == k]])
+    return float(thick[doubtful].min())
+
+
+def _depth(start: Floats, corners: Floats) -> float:
+    """Return the greatest distance from triangles (n, 3, 3), uphill from a place (3,)."""
+    from scipy.optimize import minimize
+
+    from geofit.morphing.triangle_loops import nearest_places
+
+    def minus_distance(place: Floats) -> float:
+        feet = nearest_places(np.tile(place, (len(corners), 1)), corners)
+        return -float(np.linalg.norm(feet - place, axis=1).min())
+
+    # A simplex: at the middle of a plate the distance has a kink.
+    return -float(minimize(minus_distance, start, method="Nelder-Mead", options={"xatol": 0.02, "fatol": 0.02}).fun)

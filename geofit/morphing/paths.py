@@ -1,4 +1,4 @@
-"""Ways from A to B: fields at every share s of the way, and the share at which a node joins or leaves the body."""
+"""Ways from A to B: fields at every share s of the way."""
 
 from __future__ import annotations
 
@@ -42,10 +42,6 @@ class Path(Protocol):
         """Return two stored fields and the share t between them: the frame is (1 - t) first + t last."""
         ...
 
-    def crossings(self) -> tuple[Floats, Floats]:
-        """Return the shares s at which nodes join (n,) and leave (m,), each sorted."""
-        ...
-
 
 def samples_at(path: Path, s: float) -> Floats:
     """Return the field of the frame at share s, (nx, ny, nz)."""
@@ -85,13 +81,6 @@ class Line:
         starts, low, high = self._spans
         return np.asarray(starts[(low <= s + ROUNDING) & (high >= s - ROUNDING)])
 
-    def crossings(self) -> tuple[Floats, Floats]:
-        """Return when nodes join and leave, sorted."""
-        from geofit.morphing.look_loops import crossing_shares
-
-        join, leave = crossing_shares(self.first, self.last)
-        return np.sort(join), np.sort(leave)
-
 
 @dataclass(frozen=True, eq=False)
 class Snapshots:
@@ -122,22 +111,6 @@ class Snapshots:
         phi = np.where(inside, -far, far)
         phi[self.nodes[k]] = self.values[k]
         return phi.reshape(self.lattice.shape)
-
-    @cached_property
-    def _crossed(self) -> tuple[Floats, Floats]:
-        from geofit.morphing.look_loops import crossing_shares
-
-        join, leave = [], []
-        for k in range(len(self.s) - 1):
-            width = self.s[k + 1] - self.s[k]
-            a, b = crossing_shares(self.whole(k), self.whole(k + 1))
-            join.append(self.s[k] + width * a)
-            leave.append(self.s[k] + width * b)
-        return np.sort(np.concatenate(join)), np.sort(np.concatenate(leave))
-
-    def crossings(self) -> tuple[Floats, Floats]:
-        """Return when nodes join and leave, sorted."""
-        return self._crossed
 
 
 def level_set_path(

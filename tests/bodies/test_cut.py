@@ -23,6 +23,12 @@ class Plane:
         return np.where(along > self.end, np.nan, z)
 
 
+def test_one_surface_needs_no_list(ring: BodyFit) -> None:
+    assert [piece.name for piece in ring.cut(Plane("top", 3, 0))] == [
+        piece.name for piece in ring.cut([Plane("top", 3, 0)])
+    ]
+
+
 def test_pieces_are_closed_and_add_up(ring: BodyFit) -> None:
     surfaces = [Plane("top", 3, 0.1, 3), Plane("base", -6, 0), Plane("fault", 0, 3)]
     pieces = ring.cut(surfaces)

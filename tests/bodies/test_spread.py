@@ -12,6 +12,7 @@ import pytest
 
 from bodies.planted import ORIGIN, SIZE
 from bodies.shapes import Case, case, other_case
+from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_body
 from geofit.bodies.posterior import BodyPosterior
 
@@ -40,3 +41,18 @@ def test_bodies_of_kinds_that_were_used_and_not_used_to_calibrate(make: Callable
         own = (p > low) & (p <= high)
         assert own.sum() > 300
         assert abs(p[own].mean() - true[own].mean()) < 0.08, (low, high)
+
+
+@pytest.mark.parametrize(("holes", "few"), [(2, True), (3, False)])
+def test_too_few_contacts_for_a_band_are_a_warning(holes: int, few: bool) -> None:
+    x, y = np.meshgrid(np.linspace(-15, 15, holes), np.linspace(-15, 15, holes))
+    plan = np.column_stack([x.ravel(), y.ravel()])
+    height = 40 * np.sqrt(1 - (plan**2).sum(axis=1) / 30**2)
+    contacts = np.concatenate([np.column_stack([plan, sign * height]) for sign in (-1, 1)])
+    around = np.array(
+        [[x, y, z] for x in (-50, 0, 50) for y in (-50, 0, 50) for z in (-60, 0, 60) if (x, y, z) != (0, 0, 0)]
+    )
+    body = fit_body(BodyData(contacts, [[0.0, 0.0, 0.0]], around))
+    assert body.accuracy is not None
+    warned = [note.code for note in body.accuracy.notes if note.severity == "warning"]
+    assert ("bodies.too-few-contacts-for-band" in warned) == few

@@ -44,6 +44,21 @@ def test_a_line_along_the_floor(table):
     np.testing.assert_allclose(found.walls, [[2, 2, 3, 0]] * 2)
 
 
+@pytest.mark.parametrize("finer", [1.0, 1.1, 1.23])
+@pytest.mark.parametrize(("width", "height"), [(6, 4), (3, 3), (5, 5)])
+def test_a_tunnel_surveyed_at_its_floor_has_its_volume(table, width, height, finer):
+    found = table(f"x,y,z,width,height\n0,0,300,{width},{height}\n100,0,300,{width},{height}\n", level="floor")
+    body = centreline_body(found, ends="flat")
+    assert body.volume(body.fine * finer) == pytest.approx(body.sweeps.volumes.sum(), rel=0.005)
+
+
+def test_the_size_of_a_long_thin_tunnel_is_as_exact_as_it_says(table):
+    body = centreline_body(table("x,y,z,width,height\n0,0,0,1.2,0.8\n100,0,0,1.2,0.8\n"), ends="flat")
+    truth = np.pi / 4 * 1.2 * 0.8 * 100
+    assert body.size.volume == pytest.approx(truth, rel=0.002)
+    assert body.size.volume_error <= 0.002 * truth
+
+
 def test_lines_meet_at_stations_of_one_name_and_place(table):
     found = table(
         "adit,station,x,y,z,left,right,up,down\nA,1,0,0,0,1,2,3,4\nA,2,10,0,0,1,,3,4\nB,2,10,0,0,,,,\nB,3,10,9,0,1,1,1,1\n"

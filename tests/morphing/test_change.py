@@ -98,3 +98,15 @@ def test_cells_too_coarse_for_a_part_are_named_with_the_spacing_it_needs() -> No
     assert with_code(m.notes, "morphing.volumes-disagree").params["wanted"] == pytest.approx(volume_of(10.0), rel=0.02)
     fine = geofit.morph(ball(10.0), ball(9.0), spacing=2.5)
     assert not [note for note in fine.notes if note.code == "morphing.cells-too-coarse" and note.params["name"] == "A"]
+
+
+@pytest.mark.parametrize("thick", [2.0, 3.5, 5.0])
+def test_a_plate_is_as_thick_as_it_is(thick: float) -> None:
+    def plate(height: float) -> implicit.TriangleMesh:
+        slab = cube(1.0)
+        return implicit.TriangleMesh(slab.vertices * [40.0, 40.0, height], slab.triangles)
+
+    m = geofit.morph(plate(7.0), plate(thick), spacing=1.0, names=["thick", "thin"])
+    (note,) = [note for note in m.notes if note.code == "morphing.cells-too-coarse"]
+    assert note.params["name"] == "thin"
+    assert note.params["across"] == pytest.approx(thick, rel=0.03)

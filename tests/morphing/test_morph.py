@@ -165,6 +165,32 @@ def test_pace_by_volume_and_by_progress() -> None:
     assert caught.value.code == "morphing.volume-not-monotone"
 
 
+def bench(height: float) -> implicit.TriangleMesh:
+    faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    corners = np.array(list(np.ndindex(2, 2, 2)), float) * [32.0, 32.0, height]
+    return implicit.TriangleMesh(corners, [[f[0], f[k], f[k + 1]] for f in faces for k in (1, 2)])
+
+
+@pytest.mark.parametrize("mode", ["arrival", "blend", "pde"])
+@pytest.mark.parametrize(("before", "after"), [(9.0, 7.0), (9.0, 8.6)])
+def test_a_level_along_the_lattice_falls_evenly(mode: str, before: float, after: float) -> None:
+    m = geofit.morph(bench(before), bench(after), mode=mode, spacing=1.0, dates=["2020-01-01", "2021-01-01"])
+    levels = before + (after - before) * np.linspace(0.1, 0.9, 9)
+    off = [m(tau).distance([[16.0, 16.0, z]])[0] for tau, z in zip(np.linspace(0.1, 0.9, 9), levels, strict=True)]
+    np.testing.assert_allclose(off, 0, atol=0.08 * (before - after))
+    leg = m.legs[0]
+    for p in (0.1, 0.45, 0.8):
+        assert leg.progress(leg.share_at_progress(p)) == pytest.approx(p, abs=1e-6)
+
+
+def test_the_volume_sets_the_pace_where_faces_run_along_the_lattice() -> None:
+    m = geofit.morph(bench(9), bench(7), spacing=1.0, pace="volume")
+    leg = m.legs[0]
+    first, last = leg.volume(0.0), leg.volume(1.0)
+    for p in (0.1, 0.45, 0.5, 0.55, 0.9):
+        assert leg.volume(leg.share_at_volume(p)) == pytest.approx((1 - p) * first + p * last, abs=1e-4 * first)
+
+
 def test_dates_set_the_pace_and_nothing_is_extrapolated() -> None:
     bodies = [implicit.Sphere([500_000, 3_000_000, 120], r) for r in (10.0, 12.0, 11.0)]
     m = geofit.morph(*bodies, dates=["2020-01-01", "2021-01-01", "2024-01-01"], cells=48, sd=[0.05, 0.05, 0.1])
@@ -263,11 +289,11 @@ def test_alignment_finds_a_known_similarity_and_starts_where_the_body_is(turn: l
 
 def test_two_surveys_above_a_common_base() -> None:
     class Dome:
-        def __init__(self, height: float) -> None:
-            self.height = height
+        def __init__(self, height: float, ground: float = 100.0) -> None:
+            self.height, self.ground = height, ground
 
         def elevation(self, x, y):
-            return 100 + self.height * np.exp(-((x - 50) ** 2 + (y - 50) ** 2) / 400)
+            return self.ground + self.height * np.exp(-((x - 50) ** 2 + (y - 50) ** 2) / 400)
 
     area = ((0, 0), (100, 100))
     before, after = (geofit.between(Dome(h), 90.0, area=area, name=str(h)) for h in (20.0, 12.0))
@@ -277,7 +303,8 @@ def test_two_surveys_above_a_common_base() -> None:
     assert m.changes[0].gain <= 0.02 * m.changes[0].loss
     middle = m(0.5)
     assert middle.overview.is_closed
-    pieces = middle.cut({"bench": Dome(0.0)})
+    assert middle.volume == pytest.approx((m(0).volume + m(1).volume) / 2, rel=0.002)
+    pieces = middle.cut({"bench": Dome(0.0, 102.0)})
     assert sum(piece.volume for piece in pieces) == pytest.approx(middle.volume, rel=1e-6)
     with pytest.raises(MorphError):
         geofit.between(80.0, Dome(5.0), area=area)
