@@ -150,18 +150,18 @@ def fit_with_core(
     stage("field", 0.25)
     field, coarse = choose_field(data, settings, most, sketched) if chosen is None else chosen
     relief = relief_of_core(data, core, inside, field, settings, most)
-    noise = field.noise if relief is None else relief.noise
+    noise, spread = (field.noise, field.spread) if relief is None else (relief.noise, relief.spread)
     automatic = settings.core == "auto" and settings.smoothing == "auto" and not parametrization.parametric
-    little = min(settings.interior_tolerance, LITTLE * field.spread)
+    little = min(settings.interior_tolerance, LITTLE * spread)
     drawn = float(np.mean(parametrization.section[kept][inside] != "")) >= DRAWN
-    resolved = (RESOLVED_DRAWN if drawn else RESOLVED) * field.spread
+    resolved = (RESOLVED_DRAWN if drawn else RESOLVED) * spread
     if automatic and noise > max(resolved, little):
         raise ExactnessError(
             message(
                 "fitting.points-support-to-noise",
                 "its points agree only to about {noise:.3g} m, while their height varies by about {spread:.3g} m",
                 noise=noise,
-                spread=field.spread,
+                spread=spread,
             )
         )
     stage("core", 0.4)

@@ -45,7 +45,8 @@ class CoreRelief:
     """A field over a core, (``space``, ``coefficients``), metres about the trend of all points.
 
     ``scale`` is the unit of its lengths in those of the whole surface. It holds in the rectangle ``core`` and ends at
-    the edge of ``reach``, both in units of the whole surface. ``noise`` is that of the core's points about it, metres.
+    the edge of ``reach``, both in units of the whole surface. ``noise`` is that of the core's points about it, and
+    ``spread`` the standard deviation of their heights about their own trend, metres.
     """
 
     space: TensorSpace
@@ -54,6 +55,7 @@ class CoreRelief:
     core: Rectangle
     reach: Rectangle
     noise: float
+    spread: float
 
     def spans(self) -> tuple[Floats, Floats]:
         """Return, for u and v, the row (low, high, size) of spans that follow the field."""
@@ -139,7 +141,7 @@ def relief_of_core(
     if found.noise > quiet:
         return None
     coefficients = smoothed(own, space, found).coefficients + plane_coefficients(space) @ trend
-    return CoreRelief(space, coefficients, scale, core, reach, found.noise)
+    return CoreRelief(space, coefficients, scale, core, reach, found.noise, found.spread)
 
 
 def _points_within(data: Data, reach: Rectangle, inside: NDArray[np.bool_], scale: float) -> tuple[Data, Floats]:

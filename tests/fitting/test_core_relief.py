@@ -62,7 +62,7 @@ def test_it_holds_in_the_core_and_ends_with_its_reach():
     knots = bspline.clamped_knots(np.linspace(0.0, 20.0, 11), 3)
     space = TensorSpace(knots, knots, 3)
     rng = np.random.default_rng(1)
-    field = CoreRelief(space, rng.normal(size=space.size), 0.5, (2.0, 8.0, 2.0, 10.0), (1.0, 9.0, 1.0, 10.0), 0.1)
+    field = CoreRelief(space, rng.normal(size=space.size), 0.5, (2.0, 8.0, 2.0, 10.0), (1.0, 9.0, 1.0, 10.0), 0.1, 1.0)
     plane = rng.uniform(0, 10, (2000, 2))
     plane[:50, 1] = 10.0
     heights = rng.normal(size=len(plane))
@@ -84,7 +84,7 @@ def test_a_surface_that_takes_it_follows_it():
     own_knots = bspline.clamped_knots(np.linspace(0.0, 12.0, 7), 3)
     own = TensorSpace(own_knots, own_knots, 3)
     rng = np.random.default_rng(2)
-    field = CoreRelief(own, rng.normal(size=own.size), 0.5, (2.0, 4.0, 2.0, 4.0), (0.0, 6.0, 0.0, 6.0), 0.1)
+    field = CoreRelief(own, rng.normal(size=own.size), 0.5, (2.0, 4.0, 2.0, 4.0), (0.0, 6.0, 0.0, 6.0), 0.1, 1.0)
     knots = bspline.clamped_knots(np.linspace(-2.0, 8.0, 61), 3)
     space = TensorSpace(knots, knots, 3)
     coefficients = rng.normal(size=space.size) * 0
