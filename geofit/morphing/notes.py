@@ -115,5 +115,7 @@ def _depth(start: Floats, corners: Floats) -> float:
         feet = nearest_places(np.tile(place, (len(corners), 1)), corners)
         return -float(np.linalg.norm(feet - place, axis=1).min())
 
-    # A simplex: at the middle of a plate the distance has a kink.
-    return -float(minimize(minus_distance, start, method="Nelder-Mead", options={"xatol": 0.02, "fatol": 0.02}).fun)
+    # A simplex: at the middle of a plate the distance has a kink. A small one: beyond the triangles it grows again.
+    simplex = start + np.concatenate([np.zeros((1, 3)), 0.5 * np.eye(3)])
+    options = {"xatol": 0.02, "fatol": 0.02, "initial_simplex": simplex}
+    return -float(minimize(minus_distance, start, method="Nelder-Mead", options=options).fun)

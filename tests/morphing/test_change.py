@@ -110,3 +110,12 @@ def test_a_plate_is_as_thick_as_it_is(thick: float) -> None:
     (note,) = [note for note in m.notes if note.code == "morphing.cells-too-coarse"]
     assert note.params["name"] == "thin"
     assert note.params["across"] == pytest.approx(thick, rel=0.03)
+
+
+def test_a_small_ball_far_from_the_others_is_as_thick_as_it_is():
+    def body(radius):
+        return implicit.union(implicit.Sphere([0, 0, 0], 30.0), implicit.Sphere([480, 0, 0], radius))
+
+    way = geofit.morph(body(9.0), body(10.0))
+    thick = [note.params["across"] for note in way.notes if note.code == "morphing.cells-too-coarse"]
+    assert thick == pytest.approx([18.0, 20.0], rel=0.15)
