@@ -117,5 +117,7 @@ def _depth(start: Floats, corners: Floats) -> float:
 
     # A simplex: at the middle of a plate the distance has a kink. A small one: beyond the triangles it grows again.
     simplex = start + np.concatenate([np.zeros((1, 3)), 0.5 * np.eye(3)])
-    options = {"xatol": 0.02, "fatol": 0.02, "initial_simplex": simplex}
-    return -float(minimize(minus_distance, start, method="Nelder-Mead", options=options).fun)
+    found = minimize(
+        minus_distance, start, method="Nelder-Mead", options={"xatol": 0.02, "fatol": 0.02, "initial_simplex": simplex}
+    )
+    return -float(found.fun)
