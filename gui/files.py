@@ -184,7 +184,7 @@ class Files(QObject):
         box.setIcon(QMessageBox.Icon.Warning)
         box.setWindowTitle("geofit")
         box.setText(self.tr("{name} has been saved by another window since it was opened here.").format(name=path.name))
-        box.setInformativeText(self.tr("If you overwrite it, what was saved there will be lost."))
+        box.setInformativeText(self.tr("Overwriting it discards the changes of the other window."))
         box.addButton(QMessageBox.StandardButton.Yes).setText(self.tr("&Overwrite"))
         box.addButton(QMessageBox.StandardButton.No).setText(self.tr("Save under &another name…"))
         box.addButton(QMessageBox.StandardButton.Cancel)
@@ -268,9 +268,7 @@ class Files(QObject):
         box.setIcon(QMessageBox.Icon.Question)
         box.setWindowTitle("geofit")
         box.setText(
-            self.tr("The site file of {name} is not there any more: {file}").format(
-                name=project.name, file=error.file or ""
-            )
+            self.tr("The site file of {name} no longer exists: {file}").format(name=project.name, file=error.file or "")
         )
         box.setInformativeText(self.tr("If it was moved, show where it is now."))
         box.setStandardButtons(QMessageBox.StandardButton.Open | QMessageBox.StandardButton.Cancel)
@@ -405,7 +403,7 @@ class Files(QObject):
             _LOG.warning(
                 message(
                     "gui.log-site-file-gone",
-                    "The site file {file} is not there any more: the project cannot be opened without it.",
+                    "The site file {file} no longer exists; the project cannot be opened without it.",
                     file=Untranslated(str(site_file)),
                 )
             )

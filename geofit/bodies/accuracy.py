@@ -23,7 +23,7 @@ WORST = 20
 #: of planted bodies that fit their data neither has any, of one real open cloud 17 % are far; turned inside out, a body
 #: has all its contacts on cavities or a third of its surface far.
 BURIED, FAR = 0.5, 0.25
-#: Contacts below which P10 to P90 does not hold the volume often enough: of planted ellipsoids a third, not 80 %.
+#: With fewer contacts P10 to P90 is too narrow: it contained the volume of a third of the planted ellipsoids, not 80 %.
 FEW = 9
 #: Sides of the box, and how a sentence calls them.
 SIDE_WORDS = {

@@ -43,8 +43,8 @@ class BodyVolumes:
     body and ``error`` its numerical error (:attr:`geofit.BodyFit.size`), ``mean`` and ``sd`` are over the realizations,
     ``values`` (n,) are their volumes. Their spread contains the numerical error as one more standard deviation.
 
-    With fewer than 9 contacts P10 to P90 is not calibrated but too narrow: of planted ellipsoids in 3 x 3 to 5 x 5
-    holes it held a third of the volumes. The notes of the body's accuracy then have a warning.
+    With fewer than 9 contacts P10 to P90 is too narrow: it contained a third of the volumes of planted ellipsoids
+    drilled by 3 x 3 to 5 x 5 holes. The notes of the body's accuracy then include a warning.
     """
 
     p10: float

@@ -319,9 +319,9 @@ def _save(
     from OCP.TCollection import TCollection_HAsciiString
 
     try:
-        # Beside its place, unless OpenCASCADE could not open it there.
-        beside = legible(str(target.parent)) == str(target.parent)
-        handle, temporary = tempfile.mkstemp(dir=target.parent if beside else None, prefix=".geofit-", suffix=".step")
+        # Next to its place, unless OpenCASCADE could not open it there.
+        adjacent = legible(str(target.parent)) == str(target.parent)
+        handle, temporary = tempfile.mkstemp(dir=target.parent if adjacent else None, prefix=".geofit-", suffix=".step")
     except OSError as error:
         raise cannot_write(error, target) from None
     os.close(handle)

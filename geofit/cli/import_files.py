@@ -29,7 +29,7 @@ def import_(
     base: Annotated[list[str] | None, typer.Option(help="Code whose base is a horizon; may be repeated.")] = None,
     top: Annotated[list[str] | None, typer.Option(help="Code whose top is a horizon; may be repeated.")] = None,
     force: Annotated[
-        bool, typer.Option("--force", help="Replace a site file, or a mapping beside it, that is there already.")
+        bool, typer.Option("--force", help="Replace an existing site file, and the mapping next to it.")
     ] = False,
     as_json: Json = False,
 ) -> int:
@@ -76,7 +76,7 @@ def _refuse_existing(files: Iterable[Path]) -> None:
     for file in files:
         if file.exists():
             raise InputError(
-                message("cli.import-file-exists", "The file is there already, and may have been edited by hand"),
+                message("cli.import-file-exists", "The file already exists and may have been edited by hand"),
                 message("cli.name-other-site-file", "Name another site file, or replace it with --force."),
                 file=str(file),
             )

@@ -65,7 +65,7 @@ def refuse_inputs(paths: Iterable[Path]) -> None:
     for path in paths:
         if inputs and _is_one(path, inputs):
             raise InputError(
-                message("data.output-is-input", "The file is an input of this run, and a result would replace it"),
+                message("data.output-is-input", "The file is an input of this run, and a result would overwrite it"),
                 message("data.name-another-output", "Name another file or folder for the results."),
                 file=str(path),
             )

@@ -30,6 +30,6 @@ def stale_warning(names: Iterable[str]) -> Message:
     """Return the warning of everything that shows a verdict on stale surfaces, and what to do about them."""
     return message(
         "data.stale-surfaces",
-        "Stale, fitted to earlier data or settings: {names}. Fit again before you rely on the results.",
+        "Stale (fitted to earlier data or settings): {names}. Fit again before you rely on the results.",
         names=tuple(names),
     ).with_severity("warning")

@@ -72,8 +72,7 @@ class _Core:
     """What passes through points: those marked ``inside``, in a rectangle in units, with the field chosen for all.
 
     ``coarse`` is the space on which the field was chosen, ``relief`` the field of the core's own points where that one
-    cannot follow them; ``lines`` are the sections. ``between`` marks the points
-    between the section curves of a fold.
+    cannot follow them; ``lines`` are the sections. ``between`` marks the points between the section curves of a fold.
     """
 
     data: Data
@@ -85,7 +84,7 @@ class _Core:
     lines: Lines
     parametric: bool
     settings: FitSettings
-    relief: CoreRelief | None = None
+    relief: CoreRelief | None
 
     def field_at(self, space: TensorSpace, coefficients: Floats, plane: Floats) -> Floats:
         """Return the field at (m, 2) places of the core: that on a space, or the core's own in its place."""
@@ -150,18 +149,18 @@ def fit_with_core(
     stage("field", 0.25)
     field, coarse = choose_field(data, settings, most, sketched) if chosen is None else chosen
     relief = relief_of_core(data, core, inside, field, settings, most)
-    noise, spread = (field.noise, field.spread) if relief is None else (relief.noise, relief.spread)
+    judged = field if relief is None else relief.field
     automatic = settings.core == "auto" and settings.smoothing == "auto" and not parametrization.parametric
-    little = min(settings.interior_tolerance, LITTLE * spread)
+    little = min(settings.interior_tolerance, LITTLE * judged.spread)
     drawn = float(np.mean(parametrization.section[kept][inside] != "")) >= DRAWN
-    resolved = (RESOLVED_DRAWN if drawn else RESOLVED) * spread
-    if automatic and noise > max(resolved, little):
+    resolved = (RESOLVED_DRAWN if drawn else RESOLVED) * judged.spread
+    if automatic and judged.noise > max(resolved, little):
         raise ExactnessError(
             message(
                 "fitting.points-support-to-noise",
                 "its points agree only to about {noise:.3g} m, while their height varies by about {spread:.3g} m",
-                noise=noise,
-                spread=spread,
+                noise=judged.noise,
+                spread=judged.spread,
             )
         )
     stage("core", 0.4)
@@ -224,13 +223,15 @@ def fit_with_core(
     frozen = fixed_by_core(space, core).ravel()
     if not outer.any():
         total = through.coefficients + data.over_trend(space)
-        return Net(space, base, total, frozen, None, rule, data.unit, field, 0, settings.interior_tolerance, notes)
+        return Net(
+            space, base, total, frozen, None, rule, data.unit, field, 0, settings.interior_tolerance, notes, relief
+        )
     periphery = Periphery(data, outer, core, field, settings, limits.most, refit=settings.seam == "position")
     found = periphery.fit(space, Smoothed(through.coefficients, through.plane))
     total = found.coefficients + data.over_trend(found.space)
     return Net(
         found.space, base, total, found.frozen, core, rule, data.unit, field, found.rounds, found.limit,
-        notes + found.notes,
+        notes + found.notes, relief,
     )  # fmt: skip
 
 

@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import FitError
 from geofit.data.long_arrays import everywhere
+from geofit.data.prepared import Preparing
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
-from geofit.fitting.field import FieldChoice, choose_covariance, plane_trend
+from geofit.fitting.field import FieldChoice, choose_covariance, plane_trend, smooth
 from geofit.fitting.likelihood import plane_coefficients
-from geofit.fitting.net import smoothed
 from geofit.fitting.resolution import EVEN, LOUDER, SKETCH, choose_field, even_space, longest_span
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
@@ -41,12 +41,12 @@ FOLLOWED = 0.7
 
 
 @dataclass(frozen=True, eq=False)
-class CoreRelief:
+class CoreRelief(Preparing):
     """A field over a core, (``space``, ``coefficients``), metres about the trend of all points.
 
-    ``scale`` is the unit of its lengths in those of the whole surface. It holds in the rectangle ``core`` and ends at
-    the edge of ``reach``, both in units of the whole surface. ``noise`` is that of the core's points about it, and
-    ``spread`` the standard deviation of their heights about their own trend, metres.
+    It was chosen, as ``field``, for the ``data`` of the core and its margin; their lengths are counted in units
+    ``scale`` times as long as those of the whole surface. It replaces the field of all points in the rectangle ``core``
+    and ends at the edge of ``reach``, both in units of the whole surface.
     """
 
     space: TensorSpace
@@ -54,8 +54,8 @@ class CoreRelief:
     scale: float
     core: Rectangle
     reach: Rectangle
-    noise: float
-    spread: float
+    field: FieldChoice
+    data: Data
 
     def spans(self) -> tuple[Floats, Floats]:
         """Return, for u and v, the row (low, high, size) of spans that follow the field."""
@@ -65,9 +65,8 @@ class CoreRelief:
 
     def instead(self, plane: Floats, heights: Floats) -> Floats:
         """Return the (n,) heights at (n, 2) places where this field takes the place of another, of ``heights`` (n,)."""
-        own = self.space.matrix(self._within(plane)) @ self.coefficients
-        share = self._share(plane[:, 0], 0) * self._share(plane[:, 1], 2)
-        return np.asarray(heights + share * (own - heights))
+        own = self.space.matrix(self.places(plane)) @ self.coefficients
+        return np.asarray(heights + self.share(plane) * (own - heights))
 
     def blended(self, space: TensorSpace, coefficients: Floats) -> Floats:
         """Return the coefficients of a surface in which this field takes the place of another, both on ``space``."""
@@ -79,15 +78,19 @@ class CoreRelief:
         off = (self.instead(plane, heights.ravel()) - heights.ravel()).reshape(space.shape)
         return np.asarray(coefficients + np.linalg.solve(tables[0], np.linalg.solve(tables[1], off.T).T).ravel())
 
-    def _within(self, plane: Floats) -> Floats:
+    def share(self, plane: Floats) -> Floats:
+        """Return the (n,) share of this field at (n, 2) places: 1 in the core, 0 beyond its reach, C2 between."""
+        return self._along(plane[:, 0], 0) * self._along(plane[:, 1], 2)
+
+    def places(self, plane: Floats) -> Floats:
+        """Return (n, 2) places in the field's own units; of those beyond it, the nearest of its edge."""
         knots = (self.space.knots_u, self.space.knots_v)
         return np.clip(plane / self.scale, [each[0] for each in knots], [each[-1] for each in knots])
 
-    def _share(self, x: Floats, axis: int) -> Floats:
-        """Return the (n,) share of this field at one coordinate: 1 in the core, 0 beyond its reach, C2 between."""
+    def _along(self, x: Floats, axis: int) -> Floats:
         t = np.ones(len(x))
         for edge, end in zip(self.core[axis : axis + 2], self.reach[axis : axis + 2], strict=True):
-            # Where the core ends with the study area there is no margin.
+            # A core that reaches the edge of the study area has no margin there.
             if edge != end:
                 t = np.minimum(t, np.clip((x - end) / (edge - end), 0.0, 1.0))
         return np.asarray(t**3 * (10 - 15 * t + 6 * t**2))
@@ -140,8 +143,8 @@ def relief_of_core(
         return None  # rounding leaves no solution on spans so much shorter
     if found.noise > quiet:
         return None
-    coefficients = smoothed(own, space, found).coefficients + plane_coefficients(space) @ trend
-    return CoreRelief(space, coefficients, scale, core, reach, found.noise, found.spread)
+    coefficients = smooth(space, found, own.weighted, own.trend).coefficients + plane_coefficients(space) @ trend
+    return CoreRelief(space, coefficients, scale, core, reach, found, own)
 
 
 def _points_within(data: Data, reach: Rectangle, inside: NDArray[np.bool_], scale: float) -> tuple[Data, Floats]:

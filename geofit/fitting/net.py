@@ -21,6 +21,7 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data
 from geofit.fitting.approximate import approximate, fixed_by_core, solved_beside
 from geofit.fitting.assemble import multiply_knots
+from geofit.fitting.core_relief import CoreRelief
 from geofit.fitting.density import CLOUD
 from geofit.fitting.field import (
     FieldChoice,
@@ -72,6 +73,7 @@ class Net:
     ``coefficients`` (size,) heights or (size, 3) coordinates, metres; ``frozen`` (size,) marks the control
     points that act on the core; ``lines`` are the section lines of a core that is linear across them. ``base`` is
     the space of the field, before knots were added; ``limit`` (m) is how far from the surface noise explains points.
+    ``relief`` is the field that replaces it in the core, if there is one.
     """
 
     space: TensorSpace
@@ -85,6 +87,7 @@ class Net:
     rounds: int
     limit: float
     notes: tuple[Message, ...]
+    relief: CoreRelief | None = None
 
 
 def cap_for(settings: FitSettings, n: int, a_point: int = A_POINT) -> int:

@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from geofit.fitting.active_points import gather_points
+from geofit.fitting.active_points import Data, gather_points
+from geofit.fitting.core_relief import CoreRelief
 from geofit.fitting.field import FieldChoice, held_planes, planes_of, relative_noise, slope_of, widened_space
 from geofit.fitting.model import Model
 from geofit.fitting.resolution import even_space
@@ -28,7 +29,7 @@ from geofit.splines.blocks import BlockFactor, InverseBlocks
 from geofit.splines.matern import MaternPrecision
 from geofit.splines.tensor import TensorSpace, band_sum
 
-__all__ = ["Posterior", "noise_of_unused", "posterior"]
+__all__ = ["Posterior", "noise_of_unused", "posterior", "posterior_of_core"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -161,6 +162,17 @@ def posterior(model: Model) -> Posterior:
     return model.prepared(_posterior)
 
 
+def posterior_of_core(relief: CoreRelief) -> Posterior:
+    """Return the posterior of a core's own field, which keeps it; places are in that field's units.
+
+    Raises
+    ------
+    FitError
+        If its system has no solution.
+    """
+    return relief.prepared(_of_relief)
+
+
 def _posterior(model: Model) -> Posterior:
     given, net = model.problem, model.net
     # The points between the sections of a folded surface have found their places by now.
@@ -169,7 +181,16 @@ def _posterior(model: Model) -> Posterior:
         given.accuracy, given.parametrization, given.settings, kept, None, given.slopes, net.unit
     ).whole()
     space = net.base if net.base.size <= LARGEST else even_space(data.area, _SPAN, net.base.degree, LARGEST)
-    space, field = widened_space(space), net.field
+    return _of_field(np.flatnonzero(kept), data, space, net.field)
+
+
+def _of_relief(relief: CoreRelief) -> Posterior:
+    return _of_field(np.arange(len(relief.data.plane)), relief.data, relief.space, relief.field)
+
+
+def _of_field(kept: Ints, data: Data, space: TensorSpace, field: FieldChoice) -> Posterior:
+    """Return the posterior of a field that was chosen for data, on a space of the area."""
+    space = widened_space(space)
     turned = space.shape[1] > space.shape[0]
     if turned:
         space, field = space.turned, field.turned
@@ -199,6 +220,6 @@ def _posterior(model: Model) -> Posterior:
         - slope.aim @ slope.precision(field.hold) @ off
     )
     return Posterior(
-        np.flatnonzero(kept), np.asarray(data.plane[:]), value, weight, space, turned, factor, drift, moment,
+        kept, np.asarray(data.plane[:]), value, weight, space, turned, factor, drift, moment,
         coefficients, field, square, data.trend,
     )  # fmt: skip

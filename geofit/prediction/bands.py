@@ -23,7 +23,7 @@ from geofit.fitting.conflicts import trust_of
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.fitting.net import Net
-from geofit.fitting.posterior import Posterior, posterior
+from geofit.fitting.posterior import Posterior, posterior, posterior_of_core
 from geofit.geometry.clip import inside
 from geofit.geometry.hull import within_hull
 from geofit.geometry.projection import searchable
@@ -44,7 +44,8 @@ class PredictionError:
     """Mean square error of a surface about the rock.
 
     The surface meets points that the field takes for noisy, and departs from the field by t to do so. Given the data,
-    its expected square error is the field's posterior variance plus t^2, times the square of the local factor.
+    its expected square error is the field's posterior variance plus t^2, times the square of the local factor. In a
+    core with a field of its own, the field is that one.
     """
 
     model: Model
@@ -54,10 +55,23 @@ class PredictionError:
     def variance(self, plane: Floats) -> Floats:
         """Return the (n,) mean square errors at (n, 2) places in units, before calibration, m^2."""
         net = self.model.net
-        departure = net.space.matrix(plane) @ net.coefficients - self.posterior.height(plane)
+        height, variance = self.field(plane)
+        departure = net.space.matrix(plane) @ net.coefficients - height
         if departure.ndim == 2:
             departure = (departure * _normals(net, plane)).sum(axis=1)
-        return np.asarray(self.posterior.variance(plane) + departure**2)
+        return np.asarray(variance + departure**2)
+
+    def field(self, plane: Floats) -> tuple[Floats, Floats]:
+        """Return heights (n,) or coordinates (n, 3) of the field at (n, 2) places in units, and its variances, m^2."""
+        height, variance = self.posterior.height(plane), self.posterior.variance(plane)
+        relief = self.model.net.relief
+        if relief is not None:
+            share = relief.share(plane)
+            some = share > 0
+            own, places, part = posterior_of_core(relief), relief.places(plane[some]), share[some]
+            height[some] += part * (own.height(places) - height[some])
+            variance[some] += part * (own.variance(places) - variance[some])
+        return height, variance
 
     def sd(self, plane: Floats) -> Floats:
         """Return the (n,) standard deviations at (n, 2) places in units, metres."""

@@ -74,15 +74,17 @@ def suggest_holes(grid: Grid, error_model: PredictionError, count: int = 10) -> 
     index = _thinned(grid)
     factors = error_model.calibration.at(grid.plane)
     noise = error_model.contact_noise**2
-    variance = posterior.variance(grid.plane)
+    of_all, variance = posterior.variance(grid.plane), error_model.field(grid.plane)[1]
     rest = factors**2 * np.maximum(error_model.variance(grid.plane) - variance, 0.0)
-    scale = factors[index]
+    # In a core with a field of its own, the covariance keeps its form, and takes the variance of that field.
+    scales = factors * np.sqrt(variance / np.maximum(of_all, np.finfo(float).tiny))
+    scale = scales[index]
     among = posterior.covariance(grid.plane[index]) * np.outer(scale, scale)
     chosen = index[greedy_holes(among, rest[index], noise, count).chosen]
     if not len(chosen):
         return ()
     # The same updates once more, on every node: only the columns of the holes are needed.
-    columns = posterior.covariance_with(grid.plane, grid.plane[chosen]) * np.outer(factors, factors[chosen])
+    columns = posterior.covariance_with(grid.plane, grid.plane[chosen]) * np.outer(scales, scales[chosen])
     variance = factors**2 * variance
     before = np.sqrt(variance + rest)
     places = grid.places(model)

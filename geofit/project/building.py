@@ -17,8 +17,17 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.provenance import ManualEdit, Move, MoveToPointEdit, Part, Provenance, SeparationEdit, without_rows
 
 __all__ = [
-    "Given", "beside", "changed", "edited", "examined", "fault_surfaces", "get_ready", "given_of", "made", "make",
-]  # fmt: skip
+    "Given",
+    "changed",
+    "edited",
+    "examined",
+    "fault_surfaces",
+    "get_ready",
+    "given_of",
+    "made",
+    "make",
+    "with_site_checks",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,10 +78,10 @@ def make(provenance: Provenance, given: Given, progress: Progress | None = None)
     for edit in provenance.edits:
         tell(progress, "manual edits", 1.0)
         surface = _pushed(surface, edit, given, progress) if isinstance(edit, SeparationEdit) else edited(surface, edit)
-    return beside(surface, provenance, given.site)
+    return with_site_checks(surface, provenance, given.site)
 
 
-def beside(surface: HorizonFit, provenance: Provenance, site: Site) -> HorizonFit:
+def with_site_checks(surface: HorizonFit, provenance: Provenance, site: Site) -> HorizonFit:
     """Return a surface whose checks also check whether it agrees with the site's dips and ground."""
     from geofit.site.site_checks import add_site_checks
 
@@ -136,7 +145,7 @@ def changed(
     if surface.model is None:
         surface = make(provenance, given, progress)
     after = replace(provenance, edits=(*provenance.edits, edit))
-    return provenance, after, before, beside(edited(surface, edit, progress), after, given.site)
+    return provenance, after, before, with_site_checks(edited(surface, edit, progress), after, given.site)
 
 
 def examined(provenance: Provenance, surface: HorizonFit, *, progress: Progress) -> tuple[Provenance, PredictionResult]:

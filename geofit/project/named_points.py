@@ -135,7 +135,7 @@ def carried_rows(state: State, names: Names, site: Site) -> CarriedRows:
         lost += [
             message(
                 "project.exclusion-lost",
-                "{name}: {file} row {row} is no longer excluded: its point is gone or was corrected",
+                "{name}: the exclusion of {file} row {row} is lost, because its point was removed or corrected",
                 name=Untranslated(name), file=Untranslated(row.file), row=row.row,
             )
             for row in sorted(rows)

@@ -183,7 +183,7 @@ def _others_left(files: RunFiles, before: Mapping[str, tuple[int, int]]) -> list
     _, others = earlier_files(files, before)
     text = message(
         "project.earlier-files-left",
-        "The folder also holds files of an earlier run, which are not part of this one: {names}",
+        "The folder also contains files of an earlier run that are not part of this one: {names}",
         names=", ".join(others),
     )
     return [text] if others else []
@@ -196,12 +196,12 @@ def _without_stale(result: RunResult, stale: Sequence[str]) -> list[Message]:
     texts = (
         message(
             "project.earlier-files-removed",
-            "Files of an earlier run that this one does not write were removed: {names}",
+            "Removed files of an earlier run: {names}",
             names=", ".join(gone),
         ),
         message(
             "project.earlier-files-stale",
-            "Files of an earlier run that this one did not renew: {names}",
+            "Outdated files of an earlier run: {names}",
             names=", ".join(left),
         ),
     )

@@ -34,7 +34,7 @@ from geofit.io.snapshot import read_snapshot, write_snapshot
 from geofit.project.body_building import BodyResult
 from geofit.project.body_record import BodyProvenance
 from geofit.project.body_saving import SavedBody, bodies_of, read_bodies, records_of
-from geofit.project.building import beside
+from geofit.project.building import with_site_checks
 from geofit.project.fault_blocks import site_with_blocks
 from geofit.project.horizon_edits import HorizonEdit, shaped
 from geofit.project.named_points import NO_NAMES, NamedPoint, Names, excluded_names, found_again, reopened
@@ -118,7 +118,7 @@ def read_project(path: Path, progress: Progress | None = None, *, site_file: Pat
     site_file = _resolved(site_file or named)
     if not site_file.is_file():
         raise SiteFileGoneError(
-            message("project.site-file-gone", "The project's site file is not there any more"),
+            message("project.site-file-gone", "The project's site file no longer exists"),
             message("project.put-site-file-back", "Put it back, or open the site file where it is now."),
             file=str(site_file),
         )
@@ -202,7 +202,7 @@ def save_state(
     if not path.parent.is_dir():
         # Made anew, it would have a project without its site.
         raise InputError(
-            message("project.folder-gone", "The folder of the project is not there any more"),
+            message("project.folder-gone", "The project's folder no longer exists"),
             message("project.save-elsewhere", "Put it back, or save the project under another name."),
             file=str(path),
         )
@@ -232,7 +232,7 @@ def read_saved_surfaces(
     tell(progress, "check", 0.7)
     names = _names(project)
     return {
-        provenance: beside(checked(surface, provenance, site, names), provenance, site)
+        provenance: with_site_checks(checked(surface, provenance, site, names), provenance, site)
         for provenance, surface in found.items()
         if len(site.horizons.get(provenance.horizon, ()))
     }

@@ -128,7 +128,10 @@ def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
 def _fitted_to_others(report: AccuracyReport, t: Language) -> list[Block]:
     """Name the horizons that the listed files are not the data of."""
     names = ", ".join(h.name for h in report.horizons if any(one.kind == "data" for one in h.stale))
-    text = t("These are the files as they are now. Fitted to earlier data, see their chapters: {names}", names=names)
+    text = t(
+        "This table lists the current files. These horizons were fitted to earlier data (see their chapters): {names}",
+        names=names,
+    )
     return [Paragraph(text, "warning")] if names else []
 
 

@@ -89,7 +89,7 @@ class ChangesPanel(QWidget):
         self._name, self._comparison = "", None
         words = self.tr("The data of this horizon have not changed: there is nothing to compare.")
         if lost:
-            words = self.tr("The data have changed, and there is no earlier surface of this horizon to compare with.")
+            words = self.tr("The data have changed; no earlier surface of this horizon is available for comparison.")
         self._say(self._with_lost(words, lost), self.tr("Add data…"), self.add_requested.emit)
 
     def show_state(

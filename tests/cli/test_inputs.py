@@ -1,4 +1,4 @@
-"""No command replaces a file that it reads; an import replaces a site file only where it is told to."""
+"""No command overwrites a file that it reads; an import overwrites a site file only with ``--force``."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def test_an_import_refuses_its_tables_and_a_site_file_that_is_there(tmp_path, mo
     assert mapping.read_bytes() == before
     shutil.copy(mapping, tmp_path / "saved.toml")
     code, err = run(monkeypatch, capsys, "import", source, "--site", site, "--force", "--mapping", "saved.toml")
-    assert code == 2, "there is no such file here"
+    assert code == 2, "the file does not exist here"
     saved = tmp_path / "saved.toml"
     code, err = run(monkeypatch, capsys, "import", source, "--site", site, "--force", "--mapping", saved)
     assert code == 0, err

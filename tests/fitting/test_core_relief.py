@@ -9,11 +9,26 @@ from truth import paper_arrangement, rms
 
 import geofit
 from geofit.fitting import core as fitting_core
+from geofit.fitting.active_points import Data
 from geofit.fitting.core_relief import CoreRelief, relief_of_core
+from geofit.fitting.field import FieldChoice
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
 ORIGIN = np.array([500_000.0, 3_100_000.0])
+
+
+FIELD = FieldChoice(3, 1.0, 1.0, (0.0, 0.0), 0.1)
+
+
+NOTHING = np.empty(0)
+NO_DATA = Data(np.empty((0, 2)), NOTHING, NOTHING, NOTHING, (0.0, 1.0, 0.0, 1.0), 1.0, np.zeros(3))
+
+
+def relief(space, seed, core, reach):
+    """Return a field of random coefficients over a core."""
+    coefficients = np.random.default_rng(seed).normal(size=space.size)
+    return CoreRelief(space, coefficients, 0.5, core, reach, FIELD, NO_DATA)
 
 
 def height(plan):
@@ -50,6 +65,20 @@ def test_a_core_sharper_than_its_surroundings_is_predicted_between_its_sections(
     assert own < 0.6 * shared
 
 
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_the_band_of_such_a_core_is_that_of_its_own_field(seed):
+    xyz, places = channel(seed)
+    surface = geofit.fit_horizon(geofit.PointSet(xyz), geofit.FitSettings())
+    found = geofit.examine(surface)
+    error = surface.elevation(*places.T) - height(places)
+    at = np.column_stack([places, surface.elevation(*places.T)])
+    sd = geofit.prediction_sd(surface, found.uncertainty, at)
+    assert np.mean(np.abs(error) < 1.645 * sd) > 0.8
+    assert rms(sd) < 3 * rms(error)
+    assert found.suggestions
+    assert all(hole.max_after <= found.uncertainty.max * (1 + 1e-9) for hole in found.suggestions)
+
+
 def test_one_field_serves_a_core_as_gentle_as_its_surroundings(monkeypatch):
     truth, found = paper_arrangement(0), []
     monkeypatch.setattr(fitting_core, "relief_of_core", lambda *given: found.append(relief_of_core(*given)))
@@ -62,7 +91,7 @@ def test_it_holds_in_the_core_and_ends_with_its_reach():
     knots = bspline.clamped_knots(np.linspace(0.0, 20.0, 11), 3)
     space = TensorSpace(knots, knots, 3)
     rng = np.random.default_rng(1)
-    field = CoreRelief(space, rng.normal(size=space.size), 0.5, (2.0, 8.0, 2.0, 10.0), (1.0, 9.0, 1.0, 10.0), 0.1, 1.0)
+    field = relief(space, 1, (2.0, 8.0, 2.0, 10.0), (1.0, 9.0, 1.0, 10.0))
     plane = rng.uniform(0, 10, (2000, 2))
     plane[:50, 1] = 10.0
     heights = rng.normal(size=len(plane))
@@ -84,10 +113,9 @@ def test_a_surface_that_takes_it_follows_it():
     own_knots = bspline.clamped_knots(np.linspace(0.0, 12.0, 7), 3)
     own = TensorSpace(own_knots, own_knots, 3)
     rng = np.random.default_rng(2)
-    field = CoreRelief(own, rng.normal(size=own.size), 0.5, (2.0, 4.0, 2.0, 4.0), (0.0, 6.0, 0.0, 6.0), 0.1, 1.0)
+    field = relief(own, 2, (2.0, 4.0, 2.0, 4.0), (0.0, 6.0, 0.0, 6.0))
     knots = bspline.clamped_knots(np.linspace(-2.0, 8.0, 61), 3)
     space = TensorSpace(knots, knots, 3)
-    coefficients = rng.normal(size=space.size) * 0
-    surface = field.blended(space, coefficients)
+    surface = field.blended(space, np.zeros(space.size))
     plane = rng.uniform(-2, 8, (2000, 2))
     np.testing.assert_allclose(space.matrix(plane) @ surface, field.instead(plane, np.zeros(len(plane))), atol=2e-3)

@@ -97,7 +97,7 @@ def test_changed_files_are_offered_and_exclusions_survive_or_are_listed(app, qtb
     assert window.session.stack.undoText() == "New data: picks.csv"
     text = window.panels.changes.pages.text
     assert f"{NAME}: 3 new, 0 corrected, 1 gone" in text
-    assert "picks.csv row 20 is no longer excluded" in text
+    assert "exclusion of picks.csv row 20 is lost" in text
     window.living.look()
     assert not bar.isVisible()
     # The same bytes again change nothing.

@@ -84,10 +84,10 @@ def test_exclusions_follow_their_points_while_the_project_is_closed_and_losses_a
     app.idle()
     assert excluded_holes(app.document) == {"B3"}
     assert app.document.dirty
-    assert any("picks.csv row 9 is no longer excluded" in text for text in said)
+    assert any("exclusion of picks.csv row 9 is lost" in text for text in said)
     panel = app.window.panels.changes
     assert panel.isVisible()
-    assert "picks.csv row 9 is no longer excluded" in panel.pages.text
+    assert "exclusion of picks.csv row 9 is lost" in panel.pages.text
     assert "have not changed" not in panel.pages.text
     assert "on another line" in caplog.text
     # Saved and opened again there is nothing left to say.
@@ -110,7 +110,7 @@ def test_exclusions_follow_their_points_when_a_session_is_brought_back(app, fold
     app.idle()
     assert excluded_holes(app.document) == {"B3"}
     assert app.document.dirty
-    assert "picks.csv row 9 is no longer excluded" in app.window.panels.changes.pages.text
+    assert "exclusion of picks.csv row 9 is lost" in app.window.panels.changes.pages.text
     assert not app.desktop.session.stack.canUndo(), "its steps name lines of the former file"
     # Cut off again, it comes back again.
     (again,) = unfinished(app.killed(tmp_path / "again"))
