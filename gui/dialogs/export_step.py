@@ -116,7 +116,7 @@ class ExportDialog(TaskDialog):
             text = title if judged is None else f"{title}   {translated(judged.text)}"
             mark = "stale" if old else "none" if judged is None else level_mark(judged.level)
             item = QListWidgetItem(icon(mark), text)
-            item.setToolTip(f"{text}\n{self.tr('Older than the settings: press Fit')}" if old else text)
+            item.setToolTip(f"{text}\n{self.tr('Older than its data or settings: press Fit')}" if old else text)
             font = item.font()
             font.setItalic(old)
             item.setFont(font)

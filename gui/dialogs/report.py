@@ -192,8 +192,8 @@ class ReportDialog(TaskDialog):
         best: Form = next(form for form in ("pdf", "html", "json") if form in made.files)
         self._path = made.files[best]
         QSettings().setValue(_FOLDER, str(self._path.parent.parent))
-        names = ", ".join(str(path.resolve()) for path in made.files.values())
-        text = self.tr("Wrote {names} in {folder}.").format(names=names, folder=self._path.parent)
+        names = ", ".join(path.name for path in made.files.values())
+        text = self.tr("Wrote {names} in {folder}.").format(names=names, folder=self._path.parent.resolve())
         summary = "\n".join([text, *(translated(warning) for warning in made.warnings)])
         self.say(summary, "stale" if made.warnings else "passed")
         self.written.emit(self._path)

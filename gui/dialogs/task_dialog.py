@@ -72,9 +72,14 @@ class TaskDialog(QDialog):
         return row
 
     def say(self, text: str, mark: str = "none") -> None:
-        """Say something beside a mark of :func:`geofit.gui.panels.marks.icon`; no text, no mark."""
+        """Say something next to a mark of :func:`geofit.gui.panels.marks.icon`; no text, no mark."""
         self.message.setText(text)
         self.sign.setPixmap(icon(mark).pixmap(16) if text else QPixmap())
+        layout = self.layout()
+        if layout is not None:
+            # Else a long text would squeeze what is above it.
+            layout.activate()
+            self.resize(self.width(), max(self.height(), layout.totalHeightForWidth(self.width())))
 
     def begin(
         self,

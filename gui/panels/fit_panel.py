@@ -140,7 +140,7 @@ class FitPanel(QWidget):
             if self._locked
             else self.tr("Not applied yet: press Apply or Fit.")
             if changed
-            else self.tr("The surface is older than these settings: press Fit.")
+            else self.tr("The surface is older than its data or settings: press Fit.")
             if self._stale
             else ""
         )

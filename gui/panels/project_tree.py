@@ -288,7 +288,7 @@ class ProjectTree(QWidget):
         title = name
         if old:
             title = self.tr("{name} (stale)").format(name=name)
-            words += "\n" + self.tr("Older than the settings: press Fit")
+            words += "\n" + self.tr("Older than its data or settings: press Fit")
         mark = icon(f"horizon:{colour}+{'stale' if old else level_mark(judged.level)}")
         aloud = f"{name}, {translated(judged.word)}"
         row = TreeRow(title, ("horizon", name), count, mark, words, aloud, italic=old)

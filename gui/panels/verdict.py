@@ -115,7 +115,7 @@ class VerdictBadge(QFrame):
                     "worse away from its data."
                 ).format(n=accuracy.n)
             )
-        self._old.setText(self.tr("Older than the settings: press Fit") if self._stale else "")
+        self._old.setText(self.tr("Older than its data or settings: press Fit") if self._stale else "")
         for label in (self._more, self._old):
             label.setVisible(bool(label.text()))
         self.setAccessibleName(self.text.replace("\n", ", "))

@@ -128,7 +128,7 @@ def test_fit_all(panel, qtbot):
 
 def test_stale_results_raise_the_banner(panel):
     panel.show_settings("T3-T2", fitted().settings, True)
-    assert "older than these settings" in str(panel.banner.text)
+    assert "older than its data or settings" in str(panel.banner.text)
     assert panel.banner.isVisible()
     panel.show_settings("T3-T2", fitted().settings, False)
     assert not panel.banner.isVisible()

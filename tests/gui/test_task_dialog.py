@@ -7,7 +7,7 @@ import time
 
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QLineEdit, QVBoxLayout
+from PySide6.QtWidgets import QCheckBox, QLineEdit, QVBoxLayout
 
 from geofit.data.errors import InputError
 from geofit.data.messages import message
@@ -135,3 +135,18 @@ def test_what_went_wrong_is_said_with_what_to_do(qtbot, error, words, caplog):
     rested(qtbot, dialog)
     assert words in dialog.message.text()
     assert dialog.go.isEnabled(), "it can be tried again"
+
+
+def test_a_long_message_makes_room_for_itself(qtbot):
+    dialog = Asking(lambda number, progress: number)
+    qtbot.addWidget(dialog)
+    boxes = [QCheckBox(f"a form to choose, {k}") for k in range(5)]
+    for k, box in enumerate(boxes):
+        dialog.layout().insertWidget(k, box)
+    dialog.show()
+    qtbot.waitExposed(dialog)
+    dialog.resize(dialog.minimumSizeHint())
+    dialog.say("a sentence that goes on for a while. " * 30)
+    qtbot.wait(50)
+    assert all(box.height() >= box.sizeHint().height() for box in boxes)
+    assert dialog.message.height() >= dialog.message.heightForWidth(dialog.message.width())
