@@ -22,7 +22,7 @@ from geofit.gui.preferences import Preferences
 from geofit.gui.save_file import ask_save_file
 from geofit.gui.session import Session
 from geofit.gui.translate import translated
-from geofit.io.project import ENDING, is_project
+from geofit.io.project import ENDING, Project, is_project
 from geofit.io.project_files import sha256_of
 from geofit.io.survey_kinds import SURVEY_ENDINGS, is_survey
 from geofit.project.body_saving import saved_body
@@ -356,7 +356,7 @@ class Files(QObject):
                     found.project,
                     path.parent,
                     blocks_site,
-                    on_done=self._surfaces_read,
+                    on_done=partial(self._surfaces_read, found.project),
                     in_process=True,
                 )
         errors, doubts = (sum(issue.severity == word for issue in site.issues) for word in ("error", "warning"))
@@ -385,7 +385,17 @@ class Files(QObject):
             )
         )
 
-    def _surfaces_read(self, surfaces: dict[Provenance, HorizonFit]) -> None:
+    def _surfaces_read(self, project: Project, surfaces: dict[Provenance, HorizonFit]) -> None:
+        for result in project.results:
+            if result.provenance and Provenance.from_data(result.provenance) not in surfaces:
+                _LOG.warning(
+                    message(
+                        "gui.log-surface-not-read",
+                        "The saved surface of {name} could not be read from {file}; it is made again.",
+                        name=Untranslated(result.horizon),
+                        file=Untranslated(result.surface),
+                    )
+                )
         for provenance, surface in surfaces.items():
             self._document.put(provenance, surface)
         self._fitting.complete(tuple(surfaces))

@@ -196,7 +196,7 @@ def test_a_journal_that_lacks_steps_is_offered_to_nobody(app, folder, monkeypatc
     assert list(journals.glob("*.journal")) == []
 
 
-def test_a_damaged_surface_is_made_again(app, folder):
+def test_a_damaged_surface_is_made_again(app, folder, caplog):
     app.window.fitting.fit("T2")
     app.idle()
     path = saved(app, folder / "dam.geofit")
@@ -206,6 +206,7 @@ def test_a_damaged_surface_is_made_again(app, folder):
     app.window.files.open(path)
     app.idle()
     assert app.document.surface("T2") is not None
+    assert "The saved surface of T2 could not be read" in caplog.text
     app.trigger("save")
     app.idle()
     assert read_project(path).changed == {}

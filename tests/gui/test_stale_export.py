@@ -81,13 +81,13 @@ def test_the_step_dialog_marks_the_stale_horizon_and_says_what_to_do(app, stale,
     assert "press Fit" in first.toolTip()
     assert "stale" not in second.text()
     assert not second.font().italic()
-    assert "earlier data or settings: T2." in dialog.message.text()
+    assert "earlier data or settings): T2." in dialog.message.text()
     dialog.target.setText(str(tmp_path / "dam.step"))
     dialog.stated.certificate.setChecked(True)
     dialog.go.click()
     app.qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
     assert "Wrote" in dialog.message.text()
-    assert "earlier data or settings: T2." in dialog.message.text()
+    assert "earlier data or settings): T2." in dialog.message.text()
     certificate = pdfium.PdfDocument(dialog.files[0].certificate)
     try:
         text = " ".join(certificate[0].get_textpage().get_text_range().split())
@@ -96,4 +96,4 @@ def test_the_step_dialog_marks_the_stale_horizon_and_says_what_to_do(app, stale,
         certificate.close()
     assert "T2 ! PASS (stale)" in text
     assert "T3 ✓ PASS" in text
-    assert "earlier data or settings: T2." in text
+    assert "earlier data or settings): T2." in text

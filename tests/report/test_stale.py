@@ -66,7 +66,7 @@ def test_the_json_lists_the_causes_of_the_stale_surface(report):
 
 def test_the_limits_of_use_except_the_stale_surface(report):
     summary = document(report, EN).chapters[1]
-    assert any(isinstance(one, Paragraph) and "earlier data or settings: T3/T2" in one.text for one in summary.blocks)
+    assert any(isinstance(one, Paragraph) and "earlier data or settings): T3/T2" in one.text for one in summary.blocks)
 
 
 def test_a_failed_verdict_stays_failed():
