@@ -1,4 +1,4 @@
-"""Patches to one OpenCASCADE shell, and to one B-spline surface (paper, sec. 3.3: after the check).
+"""Patches to one OpenCASCADE shell (paper, sec. 3.3: after the check).
 
 OpenCASCADE is imported inside the functions: it takes seconds to load.
 """
@@ -15,14 +15,12 @@ from geofit.cad.faces import explore, faces_of, free_loops, placement, to_geom
 from geofit.data.errors import StitchError
 from geofit.data.messages import Message, message
 from geofit.geometry.seams import seams
-from geofit.splines import bspline
-from geofit.splines.patch import Patch
 from geofit.surfaces.protocol import Surface
 
 if TYPE_CHECKING:
     from cadquery import Shell
 
-__all__ = ["one_surface", "shell", "to_shape"]
+__all__ = ["shell", "to_shape"]
 
 Floats = NDArray[np.float64]
 
@@ -153,105 +151,3 @@ def _why_open(surface: Surface, shells: int) -> Message:
         names=tuple(patch.name for patch in surface.patches),
         shells=shells,
     )
-
-
-def one_surface(surface: Surface) -> Patch:
-    """Merge patches that make a tensor grid into one B-spline surface, for tools that want a single one.
-
-    The seams keep the smoothness they have: a tangent seam becomes a knot of multiplicity degree - 1 (C1), a
-    mere position seam one of multiplicity degree.
-
-    Raises
-    ------
-    StitchError
-        If the parameter ranges make no full grid, or neighbours differ in degree, knots or edge points.
-
-    Notes
-    -----
-    Knot removal by least squares on Boehm's insertion matrix, accepted if it moves no control point by more
-    than 1e-9 m.
-    """
-    patches = surface.patches
-    ranges_u = sorted({patch.domain[:2] for patch in patches})
-    ranges_v = sorted({patch.domain[2:] for patch in patches})
-    grid = {(patch.domain[:2], patch.domain[2:]): patch for patch in patches}
-    if len(grid) != len(ranges_u) * len(ranges_v) or len(grid) != len(patches) or len({p.degree for p in patches}) > 1:
-        names = tuple(
-            message(
-                "cad.patch-domain", "{name} {domain} degree {degree}", name=p.name, domain=p.domain, degree=p.degree
-            )
-            for p in patches
-        )
-        raise StitchError(
-            message(
-                "cad.patches-not-a-grid",
-                "The patches of '{name}' do not form a full grid of parameter ranges with one degree: "
-                "{names}. Use the sewn shell instead.",
-                name=surface.name,
-                names=names,
-            )
-        )
-    rational = any(patch.weights is not None for patch in patches)
-    rows = []
-    for range_u in ranges_u:
-        strip = [grid[range_u, range_v] for range_v in ranges_v]
-        rows.append(
-            _join(
-                [(_homogeneous(p).transpose(1, 0, 2), p.knots_v, p.knots_u) for p in strip],
-                strip[0].degree[1],
-            )
-        )
-    control, knots_u, knots_v = _join([(c.transpose(1, 0, 2), ku, kv) for c, kv, ku in rows], patches[0].degree[0])
-    knots_u, control = _smooth(knots_u, control, patches[0].degree[0], ranges_u)
-    knots_v, turned = _smooth(knots_v, control.transpose(1, 0, 2), patches[0].degree[1], ranges_v)
-    control = turned.transpose(1, 0, 2)
-    weights = control[..., 3] if rational else None
-    points = control[..., :3] / control[..., 3:] if rational else control[..., :3]
-    return Patch(surface.name, patches[0].degree, knots_u, knots_v, np.ascontiguousarray(points), weights)
-
-
-def _homogeneous(patch: Patch) -> Floats:
-    weights = np.ones(patch.control.shape[:2]) if patch.weights is None else patch.weights
-    return np.concatenate([patch.control * weights[..., None], weights[..., None]], axis=2)
-
-
-def _join(strip: list[tuple[Floats, Floats, Floats]], degree: int) -> tuple[Floats, Floats, Floats]:
-    """Put patches behind each other along their first axis: (control, knots along, knots across)."""
-    control, knots, across = strip[0]
-    for following, further, other in strip[1:]:
-        if knots[-1] != further[0] or not np.array_equal(across, other):
-            raise StitchError(
-                message(
-                    "cad.knots-differ",
-                    "Neighbouring patches differ in their knots (one ends at {end:g}, the next starts at {start:g}). "
-                    "Only restrictions of one tensor-product surface can be merged.",
-                    end=knots[-1],
-                    start=further[0],
-                )
-            )
-        if (apart := np.abs(control[-1] - following[0]).max()) > SEWING:
-            raise StitchError(
-                message(
-                    "cad.patches-too-far-to-merge",
-                    "Neighbouring patches have a gap of {apart:.3g} m; at most {limit:g} m can be merged.",
-                    apart=apart,
-                    limit=SEWING,
-                )
-            )
-        control = np.concatenate([control, following[1:]])
-        knots = np.concatenate([knots[:-1], further[degree + 1 :]])
-    return control, knots, across
-
-
-def _smooth(knots: Floats, control: Floats, degree: int, ranges: list[tuple[float, float]]) -> tuple[Floats, Floats]:
-    """Remove one knot at every joint where the surface is tangent-continuous."""
-    for joint, _ in ranges[1:]:
-        if degree < 2:
-            continue
-        fewer = np.delete(knots, np.searchsorted(knots, joint))
-        matrix = bspline.insertion_matrix(fewer, knots, degree)
-        flat = control.reshape(len(control), -1)
-        solution = np.asarray(np.linalg.lstsq(matrix, flat, rcond=None)[0], float)
-        if np.abs(matrix @ solution - flat).max() <= 1e-9:
-            knots, control = np.asarray(fewer, float), solution.reshape(-1, *control.shape[1:])
-    return knots, control

@@ -17,7 +17,7 @@ from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
 from geofit.fitting.weighted_points import WeightedPoints
-from geofit.splines.tensor import TensorSpace
+from geofit.splines.refined import Space, outer_of, padded
 
 __all__ = ["Data", "degree_for", "gather_points"]
 
@@ -51,9 +51,9 @@ class Data:
         """Return the same points, all places held."""
         return replace(self, plane=np.asarray(self.plane[:]), value=np.asarray(self.value[:]))
 
-    def over_trend(self, space: TensorSpace) -> Floats:
+    def over_trend(self, space: Space) -> Floats:
         """Return the trend's coefficients on a space."""
-        return np.asarray(plane_coefficients(space) @ self.trend)
+        return padded(space, plane_coefficients(outer_of(space)) @ self.trend)
 
 
 def gather_points(

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from geofit.fitting.skin import regularized_correction
+from geofit.splines.refined import Space
 from geofit.splines.tensor import Factor, TensorSpace, band_times
 
 __all__ = ["Approximation", "approximate", "fixed_by_core", "solved_beside"]
@@ -54,7 +55,7 @@ def fixed_by_core(space: TensorSpace, core: tuple[float, float, float, float]) -
 
 
 def approximate(
-    space: TensorSpace,
+    space: Space,
     start: Floats,
     frozen: NDArray[np.bool_],
     plane: Floats,
@@ -71,7 +72,7 @@ def approximate(
 
     Parameters
     ----------
-    space : TensorSpace
+    space : TensorSpace or RefinedSpace
         The space of the whole surface.
     start : (size,) or (size, k) array
         Coefficients of the field; those that are frozen stay.

@@ -7,20 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from geofit.geometry.frame import Frame
 from geofit.splines import bspline
 from geofit.splines.patch import Patch
+from geofit.splines.refined import RefinedSpace, Space, outer_of
 from geofit.splines.tensor import TensorSpace
 
-__all__ = [
-    "Division",
-    "NetPart",
-    "carried",
-    "divide",
-    "multiply_knots",
-    "patches_of",
-]
+__all__ = ["Division", "NetPart", "carried", "divide", "flattened", "multiply_knots", "patches_of", "with_knots"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -34,6 +29,35 @@ def multiply_knots(
     tu = bspline.insertion_matrix(space.knots_u, finer.knots_u, space.degree)
     tv = bspline.insertion_matrix(space.knots_v, finer.knots_v, space.degree)
     return finer, _refined(coefficients, tu, tv)
+
+
+def with_knots(
+    space: Space, coefficients: Floats, at_u: dict[float, int], at_v: dict[float, int]
+) -> tuple[Space, Floats]:
+    """Add knots outside what is finer in a space, without changing the surface."""
+    if isinstance(space, TensorSpace):
+        return multiply_knots(space, coefficients, at_u, at_v)
+    size = space.outer.size
+    outer, own = multiply_knots(space.outer, coefficients[:size], at_u, at_v)
+    return space.with_outer(outer), np.concatenate([own, coefficients[size:]])
+
+
+def flattened(space: Space, coefficients: Floats) -> tuple[TensorSpace, Floats]:
+    """Return the surface on one tensor space, whose knots run through it."""
+    if isinstance(space, TensorSpace):
+        return space, coefficients
+    p, knots, first = space.degree, [], []
+    for whole, fine in ((space.knots_u, space.fine.knots_u), (space.knots_v, space.fine.knots_v)):
+        knots.append(bspline.common_knots(whole, fine[(fine > fine[0]) & (fine < fine[-1])]))
+        first.append(int(np.searchsorted(knots[-1], fine[0], side="right")) - 1 - p)
+    outer, more = space.split(coefficients)
+    both = (
+        bspline.insertion_matrix(old, new, p) for old, new in zip((space.knots_u, space.knots_v), knots, strict=True)
+    )
+    found, (nu, nv) = TensorSpace(knots[0], knots[1], p), space.fine.shape
+    net = _refined(outer, *both).reshape(*found.shape, *coefficients.shape[1:])
+    net[first[0] : first[0] + nu, first[1] : first[1] + nv] += more.reshape(nu, nv, *coefficients.shape[1:])
+    return found, net.reshape(found.size, *coefficients.shape[1:])
 
 
 def carried(space: TensorSpace, coefficients: Floats, knots_u: Floats, knots_v: Floats) -> tuple[TensorSpace, Floats]:
@@ -50,6 +74,7 @@ def carried(space: TensorSpace, coefficients: Floats, knots_u: Floats, knots_v: 
 
 
 def _refined(coefficients: Floats, tu: Floats, tv: Floats) -> Floats:
+    """Return the coefficients of refined rows and columns, in the shape of the given ones."""
     net = coefficients.reshape(tu.shape[1], tv.shape[1], -1)
     # Matrix products: the last digits of einsum's own sums depend on where in the memory the arrays begin.
     rows = np.tensordot(tu, net, axes=(1, 0))
@@ -63,7 +88,7 @@ def _raised(knots: Floats, at: dict[float, int]) -> Floats:
 
 
 def patches_of(
-    space: TensorSpace,
+    space: Space,
     coefficients: Floats,
     core: Rectangle | None,
     frame: Frame,
@@ -75,8 +100,8 @@ def patches_of(
 
     Parameters
     ----------
-    space : TensorSpace
-        Space of the whole surface, in units.
+    space : TensorSpace or RefinedSpace
+        Space of the whole surface, in units; what is finer is the core.
     coefficients : (size,) or (size, 3) array
         Heights over the frame's plane, or coordinates about the origin, metres.
     core : (u0, u1, v0, v1) or None
@@ -97,10 +122,11 @@ def patches_of(
     """
     p = space.degree
     whole = divide(space, core, frame, interpolated)
-    net = _control_points(whole.space, whole.refined(coefficients), frame, unit)
     patches = []
     for part in whole.parts:
-        control, knots_u, degree_u = net[part.rows, part.columns], part.knots_u, p
+        own = whole.coefficients(part, coefficients)
+        control = _control_points(TensorSpace(part.knots_u, part.knots_v, p), own, frame, unit)
+        knots_u, degree_u = part.knots_u, p
         if part.name == "core" and ruled_lines is not None:
             nodes = np.abs(bspline.greville(knots_u, p)[:, None] - ruled_lines).argmin(axis=0)
             degree_u, control = 1, control[nodes]
@@ -111,58 +137,80 @@ def patches_of(
 
 @dataclass(frozen=True, eq=False)
 class NetPart:
-    """One patch as a part of the refined net: its rows and columns of control points, and its knots in units."""
+    """One patch as a part of the net: its knots in units, and its control points.
+
+    ``to_u`` (nu, size) and ``to_v`` (nv, size) turn rows and columns of the surface's coefficients into the patch's.
+    ``fine`` states that the patch is the rectangle in which the surface is finer: the coefficients of the finer
+    functions add to its control points.
+    """
 
     name: str
-    rows: slice
-    columns: slice
     knots_u: Floats
     knots_v: Floats
+    to_u: Floats
+    to_v: Floats
+    fine: bool
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of control points in u and v."""
+        return len(self.to_u), len(self.to_v)
 
 
 @dataclass(frozen=True, eq=False)
 class Division:
-    """A surface's net refined along the core's edges, and the parts it falls into.
+    """A surface's net, and the parts it falls into along the core's edges."""
 
-    ``refine_u`` and ``refine_v`` turn rows and columns of the surface's own coefficients into the refined ones.
-    """
-
-    space: TensorSpace
-    refine_u: Floats
-    refine_v: Floats
+    space: Space
     parts: tuple[NetPart, ...]
 
-    def refined(self, coefficients: Floats) -> Floats:
-        """Return the coefficients of the refined net, (size,) or (size, 3)."""
-        return _refined(coefficients, self.refine_u, self.refine_v)
+    def coefficients(self, part: NetPart, of_whole: Floats) -> Floats:
+        """Return the coefficients (nu * nv,) or (nu * nv, 3) of a part from those of the whole surface."""
+        outer, fine = (of_whole, None) if isinstance(self.space, TensorSpace) else self.space.split(of_whole)
+        net = outer.reshape(part.to_u.shape[1], part.to_v.shape[1], -1)
+        # Sparse products: what a row sums to depends on that row alone, so parts share their edges to the last bit.
+        for to in (part.to_u, part.to_v):
+            acted = np.asarray(csr_array(to) @ net.reshape(len(net), -1))
+            net = acted.reshape(-1, *net.shape[1:]).swapaxes(0, 1)
+        flat = net.reshape(-1, *of_whole.shape[1:])
+        return np.asarray(flat if fine is None or not part.fine else flat + fine)
+
+    def acting_most(self, part: NetPart, i: int, j: int) -> tuple[int, float]:
+        """Return the coefficient that moves control point (i, j) of a part most, and by which share of its own move."""
+        if part.fine and isinstance(self.space, RefinedSpace):
+            found = np.flatnonzero(self.space.inner == i * part.shape[1] + j)
+            if len(found):
+                return self.space.outer.size + int(found[0]), 1.0
+        in_u, in_v = part.to_u[i], part.to_v[j]
+        a, b = int(in_u.argmax()), int(in_v.argmax())
+        return a * len(in_v) + b, float(in_u[a] * in_v[b])
 
 
-def divide(space: TensorSpace, core: Rectangle | None, frame: Frame, interpolated: bool = False) -> Division:
+def divide(space: Space, core: Rectangle | None, frame: Frame, interpolated: bool = False) -> Division:
     """Find the patches of a surface: knots of full multiplicity along the core's edges (The NURBS Book, A5.1).
 
     Parameters as those of :func:`patches_of`.
     """
-    p = space.degree
-    seams_u = _inner(core[:2], space.knots_u) if core else []
-    seams_v = _inner(core[2:], space.knots_v) if core else []
-    knots_u = _raised(space.knots_u, dict.fromkeys(seams_u, p))
-    knots_v = _raised(space.knots_v, dict.fromkeys(seams_v, p))
+    p, outer = space.degree, outer_of(space)
+    strips = []
+    for knots, edges in ((outer.knots_u, core[:2] if core else ()), (outer.knots_v, core[2:] if core else ())):
+        ends = itertools.pairwise([float(knots[0]), *_inner(edges, knots), float(knots[-1])])
+        strips.append([(low, high, *_part(knots, knots, p, low, high)) for low, high in ends])
     parts = []
-    for u0, u1 in itertools.pairwise([space.knots_u[0], *seams_u, space.knots_u[-1]]):
-        for v0, v1 in itertools.pairwise([space.knots_v[0], *seams_v, space.knots_v[-1]]):
-            name = _name((u0, u1, v0, v1), core, frame, interpolated)
-            rows, part_u = _part(knots_u, p, u0, u1)
-            columns, part_v = _part(knots_v, p, v0, v1)
-            parts.append(NetPart(name, rows, columns, part_u, part_v))
-    return Division(
-        TensorSpace(knots_u, knots_v, p),
-        bspline.insertion_matrix(space.knots_u, knots_u, p),
-        bspline.insertion_matrix(space.knots_v, knots_v, p),
-        tuple(parts),
-    )
+    for (u0, u1, knots_u, to_u), (v0, v1, knots_v, to_v) in itertools.product(*strips):
+        name = _name((u0, u1, v0, v1), core, frame, interpolated)
+        if isinstance(space, RefinedSpace) and (u0, u1, v0, v1) == space.rectangle:
+            fine_u, fine_v = (
+                _part(knots, own, p, float(own[0]), float(own[-1]))
+                for knots, own in ((outer.knots_u, space.fine.knots_u), (outer.knots_v, space.fine.knots_v))
+            )
+            parts.append(NetPart(name, fine_u[0], fine_v[0], fine_u[1], fine_v[1], fine=True))
+        else:
+            parts.append(NetPart(name, knots_u, knots_v, to_u, to_v, fine=False))
+    return Division(space, tuple(parts))
 
 
-def _inner(edges: tuple[float, float], knots: Floats) -> list[float]:
+def _inner(edges: tuple[float, ...], knots: Floats) -> list[float]:
     return [float(x) for x in edges if knots[0] < x < knots[-1]]
 
 
@@ -175,13 +223,19 @@ def _control_points(space: TensorSpace, coefficients: Floats, frame: Frame, unit
     return frame.turn_back(local)
 
 
-def _part(knots: Floats, degree: int, low: float, high: float) -> tuple[slice, Floats]:
-    """Return the rows of control points of one part, and its clamped knot vector."""
-    first = int(np.searchsorted(knots, low, side="left"))
-    start = max(first - 1, 0)
-    inner = knots[(knots > low) & (knots < high)]
+def _part(knots: Floats, finer: Floats, degree: int, low: float, high: float) -> tuple[Floats, Floats]:
+    """Return the clamped knots of one part, which are those of ``finer`` there, and what turns coefficients into its.
+
+    ``finer`` contains the knots of the surface between ``low`` and ``high``.
+    """
+    inner = finer[(finer > low) & (finer < high)]
+    beyond = [knots[knots < low], knots[knots > high]]
+    ends = [np.repeat(x, max(degree, int((knots == x).sum()))) for x in (low, high)]
+    whole = np.concatenate([beyond[0], ends[0], inner, ends[1], beyond[1]])
+    first = max(len(beyond[0]) - 1, 0)
     part = np.concatenate([np.repeat(low, degree + 1), inner, np.repeat(high, degree + 1)])
-    return slice(start, start + len(part) - degree - 1), part
+    rows = slice(first, first + len(part) - degree - 1)
+    return part, bspline.insertion_matrix(knots, whole, degree)[rows]
 
 
 def _name(part: Rectangle, core: Rectangle | None, frame: Frame, interpolated: bool) -> str:

@@ -7,7 +7,7 @@ there; let the core pass through its points; approximate the periphery with what
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from operator import itemgetter
 
 import numpy as np
@@ -21,15 +21,28 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
 from geofit.fitting.approximate import fixed_by_core
 from geofit.fitting.assemble import carried, multiply_knots
-from geofit.fitting.core_relief import CoreRelief, relief_of_core
+from geofit.fitting.core_patch import (
+    FIELD_SPAN,
+    LAID,
+    NARROW,
+    Core,
+    Limits,
+    Through,
+    on_coarse,
+    span_sizes,
+    through_points_locally,
+    without_repeats,
+)
+from geofit.fitting.core_relief import relief_of_core
 from geofit.fitting.field import FieldChoice, Smoothed
-from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes, some_breaks
+from geofit.fitting.knots import graded_breaks, neighbour_pairs, some_breaks
 from geofit.fitting.net import Net, Periphery, cap_for, in_patches, smoothed
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.resolution import Choice, choose_field, longest_span
-from geofit.fitting.skin import Lines, lofted, minimum_norm_correction, refine_knots, ruled, section_lines
+from geofit.fitting.skin import lofted, minimum_norm_correction, refine_knots, ruled, section_lines
 from geofit.fitting.split import Split
 from geofit.splines import bspline
+from geofit.splines.refined import RefinedSpace, outer_of
 from geofit.splines.tensor import TensorSpace
 
 __all__ = ["fit_with_core"]
@@ -40,24 +53,12 @@ Rectangle = tuple[float, float, float, float]
 
 #: Control points a data point beside a core, and how many it may take where its points are met with no fewer.
 A_POINT, LAST_CAP = 15, 60
-#: Share of the control points that follows the spacing of a core's points; the rest goes to single pairs that need
-#: more. The second share is tried where the first leaves points strained.
-LAID = (0.9, 0.6)
 #: Longest span outside a core, in units of the spacing of the sparse points: on longer ones no rough field fits.
 LONGEST = 0.45
 #: The same where the likelihood asks for a field on finer spans than evenly spaced points do, as far as the cap allows.
 LONGEST_IN_GROUPS = 0.35
 #: Slope that two neighbours may ask for beyond the field's own, where not all points of a core can be met.
 CLIFF = 0.5
-#: Span of the field's space where the knots are finer for the core's points alone, in units. Spans longer than the
-#: other were chosen by the likelihood, and are kept: the field there is smoother than on finer ones.
-FIELD_SPAN, SIMPLE = 0.3, 0.55
-#: Spans between neighbours of one section, and of neighbouring sections, as a share of their distance.
-ALONG, ACROSS = 1.8, 1.0
-#: Spans beside a section line, as a share of the distance to the next, and how many there are on each side.
-HUG, HUGGED = 1 / 8, 1
-#: Lines nearer to the core's edge or to each other than this share of their mean distance get one knot.
-NARROW = 0.2
 #: Noise above this share of the values' spread: points that do not support each other. It does not follow the
 #: tolerances, which may be raised beyond all relief.
 RESOLVED = 0.03
@@ -65,58 +66,8 @@ RESOLVED = 0.03
 RESOLVED_DRAWN, DRAWN = 0.2, 0.9
 #: The same for noise within the interior tolerance.
 LITTLE = 0.05
-
-
-@dataclass(frozen=True, eq=False)
-class _Core:
-    """What passes through points: those marked ``inside``, in a rectangle in units, with the field chosen for all.
-
-    ``coarse`` is the space on which the field was chosen, ``relief`` the field of the core's own points where that one
-    cannot follow them; ``lines`` are the sections. ``between`` marks the points between the section curves of a fold.
-    """
-
-    data: Data
-    rectangle: Rectangle
-    inside: NDArray[np.bool_]
-    between: NDArray[np.bool_]
-    field: FieldChoice
-    coarse: TensorSpace
-    lines: Lines
-    parametric: bool
-    settings: FitSettings
-    relief: CoreRelief | None
-
-    def field_at(self, space: TensorSpace, coefficients: Floats, plane: Floats) -> Floats:
-        """Return the field at (m, 2) places of the core: that on a space, or the core's own in its place."""
-        found = np.asarray(space.matrix(plane) @ coefficients)
-        return found if self.relief is None else self.relief.instead(plane, found)
-
-
-@dataclass(frozen=True)
-class _Limits:
-    """How many control points there may be, and how short the spans are.
-
-    Between neighbours along the sections the spans are ``closer`` times as long as usual, outside the core no longer
-    than ``longest``, in units.
-    """
-
-    most: int
-    longest: float
-    closer: float = 1.0
-
-
-@dataclass(frozen=True, eq=False)
-class _Through:
-    """A surface through a core: the field's space, its own, coefficients, the plane under them.
-
-    ``rule`` are the section lines of a core that is linear across them.
-    """
-
-    base: TensorSpace
-    space: TensorSpace
-    coefficients: Floats
-    plane: Floats
-    rule: Floats | None
+#: No finer functions act on a core whose knots run through the whole surface.
+NONE = np.zeros(0, bool)
 
 
 def fit_with_core(
@@ -149,22 +100,12 @@ def fit_with_core(
     stage("field", 0.25)
     field, coarse = choose_field(data, settings, most, sketched) if chosen is None else chosen
     relief = relief_of_core(data, core, inside, field, settings, most)
-    judged = field if relief is None else relief.field
-    automatic = settings.core == "auto" and settings.smoothing == "auto" and not parametrization.parametric
-    little = min(settings.interior_tolerance, LITTLE * judged.spread)
-    drawn = float(np.mean(parametrization.section[kept][inside] != "")) >= DRAWN
-    resolved = (RESOLVED_DRAWN if drawn else RESOLVED) * judged.spread
-    if automatic and judged.noise > max(resolved, little):
-        raise ExactnessError(
-            message(
-                "fitting.points-support-to-noise",
-                "its points agree only to about {noise:.3g} m, while their height varies by about {spread:.3g} m",
-                noise=judged.noise,
-                spread=judged.spread,
-            )
-        )
-    stage("core", 0.4)
     lines = section_lines(data.plane[inside], parametrization.section[kept][inside], 0.5 * (core[1] - core[0]))
+    between = ~parametrization.parametrized[kept]
+    given = Core(data, core, inside, between, field, coarse, lines, parametrization.parametric, settings, relief)
+    if settings.core == "auto" and settings.smoothing == "auto" and not parametrization.parametric:
+        _refuse_noise(given, drawn=float(np.mean(parametrization.section[kept][inside] != "")))
+    stage("core", 0.4)
     linear = settings.across == "linear" and degree == 3
     notes: tuple[Message, ...] = ()
     if linear and not lines.straight:
@@ -175,12 +116,13 @@ def fit_with_core(
                 "across='linear' needs at least two straight, named sections; the core is cubic across",
             ).with_severity("warning"),
         )
-    first = limits = _Limits(most, min(LONGEST, max(longest_span(coarse), LONGEST_IN_GROUPS)))
-    between = ~parametrization.parametrized[kept]
+    first = limits = Limits(most, min(LONGEST, max(longest_span(coarse), LONGEST_IN_GROUPS)))
+    # Curves that run through the whole surface, and a break at the core's edge, need knots that do so too.
+    local = not (linear or parametrization.parametric or settings.seam == "position" or inside.all())
     while True:
-        given = _Core(data, core, inside, between, field, coarse, lines, parametrization.parametric, settings, relief)
+        given = replace(given, inside=inside)
         try:
-            through = _through_points(given, limits, linear)
+            through = through_points_locally(given, limits) if local else _through_points(given, limits, linear)
             break
         except ExactnessError:
             torn = _torn(given)
@@ -202,6 +144,8 @@ def fit_with_core(
                 continue
             limits = replace(limits, most=int(1.5 * limits.most), closer=0.75 * limits.closer)
     base, space, rule = through.base, through.space, through.rule
+    if isinstance(space, RefinedSpace):
+        core = space.rectangle
     if linear and rule is None:
         notes = (
             *notes,
@@ -214,19 +158,19 @@ def fit_with_core(
         words = message(
             "fitting.core-too-many-control-points",
             "meeting every point of the core takes {count} control points, more than {a_point} a data point",
-            count=in_patches(space.shape, core, space),
+            count=in_patches(outer_of(space).shape, core, space),
             a_point=A_POINT,
         )
         notes = (*notes, words)
     stage("periphery", 0.6)
     outer = ~inside
-    frozen = fixed_by_core(space, core).ravel()
     if not outer.any():
-        total = through.coefficients + data.over_trend(space)
+        total, frozen = through.coefficients + data.over_trend(space), fixed_by_core(outer_of(space), core).ravel()
         return Net(
             space, base, total, frozen, None, rule, data.unit, field, 0, settings.interior_tolerance, notes, relief
         )
-    periphery = Periphery(data, outer, core, field, settings, limits.most, refit=settings.seam == "position")
+    refit = settings.seam == "position"
+    periphery = Periphery(data, outer, core, field, settings, limits.most, refit, through.held)
     found = periphery.fit(space, Smoothed(through.coefficients, through.plane))
     total = found.coefficients + data.over_trend(found.space)
     return Net(
@@ -235,8 +179,8 @@ def fit_with_core(
     )  # fmt: skip
 
 
-def _through_points(core: _Core, limits: _Limits, linear: bool) -> _Through:
-    """Lay knots within the limits, fit the field on them, and let it pass through the core's points.
+def _through_points(core: Core, limits: Limits, linear: bool) -> Through:
+    """Lay knots of the whole surface within the limits, fit the field on them, and pass through the core's points.
 
     Raises
     ------
@@ -244,73 +188,61 @@ def _through_points(core: _Core, limits: _Limits, linear: bool) -> _Through:
         If so many control points cannot pass through the points.
     """
     data, lines = core.data, core.lines
-    degree = degree_for(len(data.plane))
-    # Ties are broken by place, not by the order of the points.
-    chosen = np.flatnonzero(core.inside)
-    chosen = chosen[np.lexsort(data.plane[chosen].T)]
+    degree, chosen = degree_for(len(data.plane)), core.chosen
     plane = data.plane[chosen]
     pairs = neighbour_pairs(plane)
     tried, rounds = [], max(core.settings.max_iterations, 1)
     for laid in LAID:
         breaks, counted = _breaks(plane, pairs, core, limits, laid)
-        if longest_span(core.coarse) > SIMPLE or core.field.alpha > degree:
-            base = core.coarse
-        else:
-            span = min(FIELD_SPAN, limits.longest)
-            some = [bspline.clamped_knots(some_breaks(along, span), degree) for along in breaks]
-            base = TensorSpace(some[0], some[1], degree)
+        span = min(FIELD_SPAN, limits.longest)
+        some = [some_breaks(along, span) for along in breaks]
+        base = core.coarse if on_coarse(core, degree) else _space(some[0], some[1], degree)
         regional = smoothed(data, base, core.field)
         misfit = data.value[chosen] - core.field_at(base, regional.coefficients, plane)
-        refined = refine_knots(*breaks, plane, pairs, misfit, degree, counted, rounds, data.unit)
+        refined = refine_knots(
+            *breaks, plane, pairs, misfit, lambda u, v: _space(u, v, degree), counted, rounds, data.unit
+        )
         tried.append((refined.strain, base, regional, refined.breaks))
         if refined.strain <= 1.0:
             break
     _, base, regional, breaks = min(tried, key=itemgetter(0))
-    knots = [bspline.clamped_knots(along, degree) for along in breaks]
-    fine, start = carried(base, regional.coefficients, knots[0], knots[1])
+    fine = _space(*breaks, degree)
+    _, start = carried(base, regional.coefficients, fine.knots_u, fine.knots_v)
     if core.relief is not None:
         start = core.relief.blended(fine, start)
     if linear:
         low, high = core.rectangle[:2]
         within = lines.u[(lines.u > low) & (lines.u < high)]
-        rule = _thinned(within, (low, high), NARROW * (high - low) / len(lines.u))
+        rule = without_repeats(within, (low, high), NARROW * (high - low) / len(lines.u))
         try:
-            return _Through(base, *_skinned(fine, start, core, rule), regional.plane, rule)
+            return Through(base, *_skinned(fine, start, core, rule), regional.plane, rule, NONE)
         except ExactnessError:
             pass
     if core.parametric and lines.straight:
-        return _Through(base, fine, _lofted(fine, start, core), regional.plane, None)
-    return _Through(base, *_skinned(fine, start, core, None), regional.plane, None)
+        return Through(base, fine, _lofted(fine, start, core), regional.plane, None, NONE)
+    return Through(base, *_skinned(fine, start, core, None), regional.plane, None, NONE)
 
 
 def _breaks(
-    plane: Floats, pairs: Ints, given: _Core, limits: _Limits, laid: float
+    plane: Floats, pairs: Ints, given: Core, limits: Limits, laid: float
 ) -> tuple[tuple[Floats, Floats], Callable[[tuple[int, int]], bool]]:
-    """Lay breaks that follow the core's points, ``plane`` (m, 2) with the ``pairs`` of neighbours among them.
+    """Lay breaks of the whole surface that follow the core's points, ``plane`` (m, 2) with the ``pairs`` of neighbours.
 
     They use the share ``laid`` of the control points that the cap allows. Return also a function that states whether
     the cap allows a net of a given shape.
-
-    What makes the surface pass through a point must be narrow in both directions: across the sections breaks hug each
-    of them, along them they follow the closest neighbours of any.
     """
     core, lines, area, degree = given.rectangle, given.lines, given.data.area, degree_for(len(given.data.plane))
     within = lines.u[(lines.u > core[0]) & (lines.u < core[1])]
     narrow = NARROW * (core[1] - core[0]) / max(len(lines.u), 1)
-    required_u = _thinned(within, (area[0], core[0], core[1], area[1]), narrow)
+    required_u = without_repeats(within, (area[0], core[0], core[1], area[1]), narrow)
     required_v = np.array([area[2], core[2], core[3], area[3]])
-    sizes_u = _beside_lines(lines) if lines.straight else pair_sizes(plane, pairs, 0, ACROSS)
-    sizes_v = pair_sizes(plane, pairs, 1, limits.closer * (ALONG if lines.straight else ACROSS))
-    if given.relief is not None:
-        following_u, following_v = given.relief.spans()
-        sizes_u, sizes_v = np.concatenate([sizes_u, following_u]), np.concatenate([sizes_v, following_v])
+    sizes_u, sizes_v = span_sizes(given, plane, pairs, limits)
     stretch = 1.0
     while True:
         scale = np.array([1.0, 1.0, stretch])
         breaks_u = graded_breaks(required_u, limits.longest * stretch, sizes_u * scale)
         breaks_v = graded_breaks(required_v, limits.longest * stretch, sizes_v * scale)
-        knots = [bspline.clamped_knots(along, degree) for along in (breaks_u, breaks_v)]
-        space = TensorSpace(knots[0], knots[1], degree)
+        space = _space(breaks_u, breaks_v, degree)
         if in_patches(space.shape, core, space) <= laid * limits.most or stretch > 1e3:
             break
         stretch *= 1.1
@@ -321,19 +253,39 @@ def _breaks(
     return (breaks_u, breaks_v), counted
 
 
-def _torn(core: _Core) -> NDArray[np.bool_]:
+def _refuse_noise(core: Core, drawn: float) -> None:
+    """Refuse to pass through points whose noise is not small against their relief.
+
+    ``drawn`` is the share of them on named sections.
+
+    Raises
+    ------
+    ExactnessError
+        If it is not.
+    """
+    field = core.field if core.relief is None else core.relief.field
+    resolved = (RESOLVED_DRAWN if drawn >= DRAWN else RESOLVED) * field.spread
+    if field.noise > max(resolved, min(core.settings.interior_tolerance, LITTLE * field.spread)):
+        raise ExactnessError(
+            message(
+                "fitting.points-support-to-noise",
+                "its points agree only to about {noise:.3g} m, while their height varies by about {spread:.3g} m",
+                noise=field.noise,
+                spread=field.spread,
+            )
+        )
+
+
+def _torn(core: Core) -> NDArray[np.bool_]:
     """Return (n,) the core's points to let go: of two that ask for a cliff, the one farther from the field.
 
     No point of a fold's section curves is.
     """
-    data, coarse = core.data, core.coarse
-    chosen = np.flatnonzero(core.inside)
+    data, chosen = core.data, np.flatnonzero(core.inside)
     torn, loose = np.zeros(len(core.inside), bool), core.between[chosen] | (not core.parametric)
     if not loose.any():
         return torn
-    plane = data.plane[chosen]
-    misfit = data.value[chosen] - core.field_at(coarse, smoothed(data, coarse, core.field).coefficients, plane)
-    misfit = misfit.reshape(len(chosen), -1)
+    plane, misfit = data.plane[chosen], core.misfit(chosen).reshape(len(chosen), -1)
     size = np.linalg.norm(misfit, axis=1)
     first, second = neighbour_pairs(plane).T
     apart = data.unit * np.linalg.norm(plane[first] - plane[second], axis=1)
@@ -364,26 +316,10 @@ def _released_note(count: int) -> Message:
     return note.with_severity("warning")
 
 
-def _beside_lines(lines: Lines) -> Floats:
-    """Return (k, 3) rows (low, high, size) of short spans that hug each section line."""
-    gaps = np.diff(lines.u)
-    size = HUG * np.minimum(np.append(gaps, gaps[-1]), np.insert(gaps, 0, gaps[0]))
-    return np.column_stack([lines.u - lines.stray - HUGGED * size, lines.u + lines.stray + HUGGED * size, size])
-
-
-def _thinned(values: Floats, fixed: tuple[float, ...], least: float) -> Floats:
-    """Return ascending values without those that all but repeat a fixed one or each other."""
-    result = np.unique(fixed)
-    for value in np.unique(values):
-        if np.abs(result - value).min() > least:
-            result = np.sort(np.append(result, value))
-    return result
-
-
 def _skinned(
     space: TensorSpace,
     coefficients: Floats,
-    given: _Core,
+    given: Core,
     rule: Floats | None,
 ) -> tuple[TensorSpace, Floats]:
     """Let the surface pass through the core's points (eq. 2), and open the seams as far as the joint asks.
@@ -420,7 +356,7 @@ def _skinned(
     return space, result
 
 
-def _lofted(space: TensorSpace, coefficients: Floats, core: _Core) -> Floats:
+def _lofted(space: TensorSpace, coefficients: Floats, core: Core) -> Floats:
     """Lay a parametric surface through its section curves, each through its points, then through those between.
 
     The hinges of a fold are sharper than the spacing of its sections: the regional field would round them off
@@ -439,6 +375,10 @@ def _lofted(space: TensorSpace, coefficients: Floats, core: _Core) -> Floats:
     if len(drawn) == len(value):
         return curves
     return curves + minimum_norm_correction(matrix, value - matrix @ curves)
+
+
+def _space(breaks_u: Floats, breaks_v: Floats, degree: int) -> TensorSpace:
+    return TensorSpace(bspline.clamped_knots(breaks_u, degree), bspline.clamped_knots(breaks_v, degree), degree)
 
 
 def _inner(edges: tuple[float, float], knots: Floats) -> list[float]:

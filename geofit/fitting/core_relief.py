@@ -9,6 +9,7 @@ their own spacing. It replaces the other one in the core, and fades over a margi
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,6 +24,7 @@ from geofit.fitting.field import FieldChoice, choose_covariance, plane_trend, sm
 from geofit.fitting.likelihood import plane_coefficients
 from geofit.fitting.resolution import EVEN, LOUDER, SKETCH, choose_field, even_space, longest_span
 from geofit.splines import bspline
+from geofit.splines.refined import abscissae
 from geofit.splines.tensor import TensorSpace
 
 __all__ = ["CoreRelief", "relief_of_core"]
@@ -70,13 +72,17 @@ class CoreRelief(Preparing):
 
     def blended(self, space: TensorSpace, coefficients: Floats) -> Floats:
         """Return the coefficients of a surface in which this field takes the place of another, both on ``space``."""
-        knots = (space.knots_u, space.knots_v)
-        at = [bspline.greville(each, space.degree) for each in knots]
-        tables = [bspline.collocation(each, space.degree, x) for each, x in zip(knots, at, strict=True)]
-        plane = np.stack(np.meshgrid(*at, indexing="ij"), axis=-1).reshape(-1, 2)
-        heights = tables[0] @ coefficients.reshape(space.shape) @ tables[1].T
-        off = (self.instead(plane, heights.ravel()) - heights.ravel()).reshape(space.shape)
-        return np.asarray(coefficients + np.linalg.solve(tables[0], np.linalg.solve(tables[1], off.T).T).ravel())
+        return coefficients + self.departure(space, lambda plane: space.matrix(plane) @ coefficients)
+
+    def departure(self, space: TensorSpace, height: Callable[[Floats], Floats]) -> Floats:
+        """Return, as coefficients on ``space``, by how much this field departs from another, a function of places."""
+        plane = abscissae(space)
+        other = height(plane)
+        off: Floats = (self.instead(plane, other) - other).reshape(space.shape)
+        for knots in (space.knots_v, space.knots_u):
+            table = bspline.collocation(knots, space.degree, bspline.greville(knots, space.degree))
+            off = np.asarray(np.linalg.solve(table, off.T), np.float64)
+        return np.asarray(off.ravel())
 
     def share(self, plane: Floats) -> Floats:
         """Return the (n,) share of this field at (n, 2) places: 1 in the core, 0 beyond its reach, C2 between."""

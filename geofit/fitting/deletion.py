@@ -29,6 +29,7 @@ from geofit.fitting.approximate import RIM
 from geofit.fitting.model import Model
 from geofit.fitting.posterior import Posterior
 from geofit.fitting.skin import DAMPING
+from geofit.splines.refined import finest
 
 __all__ = ["Correction", "LinearFit", "Prediction", "linear_fit"]
 
@@ -154,7 +155,7 @@ def _corrections(given: Posterior, model: Model) -> tuple[Correction, ...]:
     residual = given.residual[:, None]
     inside = problem.split.inside[given.kept] & (problem.split.core is not None)
     if inside.any():
-        steps.append(_correction(matrix, np.flatnonzero(inside), np.ones(matrix.shape[1]), _RIDGE, 0.0))
+        steps.append(_correction(matrix, np.flatnonzero(inside), finest(net.space).astype(float), _RIDGE, 0.0))
         residual = steps[-1].after(residual, [])
     pulled = _pulled(given, model, residual[:, 0]) & ~inside
     if net.rounds and pulled.any():

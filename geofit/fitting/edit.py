@@ -12,7 +12,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array, diags_array, vstack
 
@@ -27,6 +26,7 @@ from geofit.fitting.model import Model
 from geofit.fitting.skin import minimum_norm_correction
 from geofit.geometry.projection import project
 from geofit.splines.patch import Patch
+from geofit.splines.refined import neighbours
 
 if TYPE_CHECKING:
     from geofit.fitting.horizon_fit import HorizonFit
@@ -146,8 +146,7 @@ def move_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
                 )
             )
         # Where exact points lie close together, the control points next to those that act have to move too.
-        around = sliding_window_view(np.pad(acting.reshape(net.space.shape), 1), (3, 3))
-        acting, wider = around.any(axis=(2, 3)).ravel(), wider + 1
+        acting, wider = neighbours(net.space, acting), wider + 1
         change = _moved_beside(csr_array(row), misfit, fixed, acting)
     return _changed(
         surface,
@@ -236,7 +235,7 @@ def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> Hor
     part = _part(model, patch)
     index, _ = _coefficient(model, part, i, j)
     whole = model.net.space.knots_u, model.net.space.knots_v
-    for k, count, knots, ends in zip((i, j), _shape(part), (part.knots_u, part.knots_v), whole, strict=True):
+    for k, count, knots, ends in zip((i, j), part.shape, (part.knots_u, part.knots_v), whole, strict=True):
         if (k < TANGENT_ROWS and knots[0] != ends[0]) or (k >= count - TANGENT_ROWS and knots[-1] != ends[-1]):
             text = message(
                 "fitting.control-point-on-seam",
@@ -250,7 +249,7 @@ def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> Hor
             raise FitError(text)
     _refuse_exact(surface, model, index, patch, i, j)
     weights = dict(model.weights)
-    changed = np.array(weights.get(patch, np.ones(_shape(part))))
+    changed = np.array(weights.get(patch, np.ones(part.shape)))
     changed[i, j] = weight
     weights[patch] = changed
     return _changed(
@@ -348,13 +347,9 @@ def _part(model: Model, patch: str) -> NetPart:
     )
 
 
-def _shape(part: NetPart) -> tuple[int, int]:
-    return part.rows.stop - part.rows.start, part.columns.stop - part.columns.start
-
-
 def _coefficient(model: Model, part: NetPart, i: int, j: int) -> tuple[int, float]:
     """Return the coefficient of the whole net that moves a patch's control point most, and by which share."""
-    rows, columns = _shape(part)
+    rows, columns = part.shape
     whole = all(isinstance(k, (int, np.integer)) for k in (i, j))
     if not (whole and 0 <= i < rows and 0 <= j < columns):
         raise FitError(
@@ -370,17 +365,13 @@ def _coefficient(model: Model, part: NetPart, i: int, j: int) -> tuple[int, floa
         )
     given, net = model.problem, model.net
     division = divide(net.space, net.core, given.parametrization.frame, given.split.core is not None)
-    in_u, in_v = division.refine_u[part.rows.start + i], division.refine_v[part.columns.start + j]
-    a, b = int(in_u.argmax()), int(in_v.argmax())
-    return a * net.space.shape[1] + b, float(in_u[a] * in_v[b])
+    return division.acting_most(part, int(i), int(j))
 
 
 def _support(model: Model, index: int) -> tuple[float, float, float, float]:
-    space, unit = model.net.space, model.net.unit
-    a, b = divmod(index, space.shape[1])
-    reach = space.degree + 1
-    u, v = space.knots_u * unit, space.knots_v * unit
-    return float(u[a]), float(u[a + reach]), float(v[b]), float(v[b + reach])
+    unit = model.net.unit
+    u0, u1, v0, v1 = model.net.space.support(index)
+    return u0 * unit, u1 * unit, v0 * unit, v1 * unit
 
 
 def _acting(model: Model, index: int) -> NDArray[np.bool_]:

@@ -25,8 +25,8 @@ from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.resolution import Choice
 from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
-from geofit.splines.bspline import greville
 from geofit.splines.patch import Patch
+from geofit.splines.refined import abscissae, outer_of, padded
 from geofit.surfaces.patch_surface import PatchSurface
 
 __all__ = ["Model", "Problem"]
@@ -135,8 +135,7 @@ class Model(Preparing):
         net = self.net
         if self.aside is None:
             return net.coefficients
-        u, v = (greville(knots, net.space.degree) * net.unit for knots in (net.space.knots_u, net.space.knots_v))
-        plane = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
+        plane = padded(net.space, abscissae(outer_of(net.space)) * net.unit)
         return np.column_stack([plane + self.aside, net.coefficients])
 
     def patches(self) -> tuple[Patch, ...]:

@@ -20,7 +20,7 @@ from geofit.data.messages import Message, message
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data
 from geofit.fitting.approximate import approximate, fixed_by_core, solved_beside
-from geofit.fitting.assemble import multiply_knots
+from geofit.fitting.assemble import with_knots
 from geofit.fitting.core_relief import CoreRelief
 from geofit.fitting.density import CLOUD
 from geofit.fitting.field import (
@@ -34,6 +34,7 @@ from geofit.fitting.resolution import Choice, choose_field
 from geofit.fitting.smoothness import ENOUGH
 from geofit.geometry.cells import tabulate
 from geofit.splines.patch import Patch
+from geofit.splines.refined import RefinedSpace, Space, outer_of
 from geofit.splines.tensor import TensorSpace
 
 __all__ = [
@@ -50,6 +51,8 @@ Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
 Stage = Callable[[str, float], None]
 
+#: Spans between the core and a point next to it that is met: so many reach it and do not act on the core.
+BESIDE = 2.5
 #: Span around a point that is met within its tolerance, in units: what lies between stays the field's.
 NARROW = 0.15
 #: Shortest span that is still halved for a point outside its tolerance.
@@ -76,7 +79,7 @@ class Net:
     ``relief`` is the field that replaces it in the core, if there is one.
     """
 
-    space: TensorSpace
+    space: Space
     base: TensorSpace
     coefficients: Floats
     frozen: NDArray[np.bool_]
@@ -95,15 +98,20 @@ def cap_for(settings: FitSettings, n: int, a_point: int = A_POINT) -> int:
     return settings.max_control_points or int(np.clip(a_point * n, FEWEST, MOST))
 
 
-def in_patches(shape: tuple[int, int], core: Rectangle | None, space: TensorSpace) -> int:
-    """Return the control points of all patches: each seam adds knots, and a row that both sides count."""
+def in_patches(shape: tuple[int, int], core: Rectangle | None, space: Space) -> int:
+    """Return the control points of all patches: each seam adds knots, and a row that both sides count.
+
+    ``shape`` is that of the net, outside of what is finer.
+    """
     if core is None:
         return shape[0] * shape[1]
-    rows = []
+    rows, within = [], []
     for count, knots, edges in ((shape[0], space.knots_u, core[:2]), (shape[1], space.knots_v, core[2:])):
         inner = [x for x in edges if knots[0] < x < knots[-1]]
         rows.append(count + sum(space.degree + 1 - int((knots == x).sum()) for x in inner))
-    return rows[0] * rows[1]
+        within.append(int(((knots > edges[0]) & (knots < edges[1])).sum()) + space.degree + 1)
+    finer = space.fine.size - within[0] * within[1] if isinstance(space, RefinedSpace) else 0
+    return rows[0] * rows[1] + finer
 
 
 def crowded(space: TensorSpace, plane: Rows) -> tuple[float, float] | None:
@@ -145,7 +153,7 @@ def approximate_all(
     field, base = choose_field(data, settings, most, sketched) if chosen is None else chosen
     start = smoothed(data, base, field)
     stage("periphery", 0.5)
-    periphery = Periphery(data, np.ones(n, bool), None, field, settings, most, refit=False)
+    periphery = Periphery(data, np.ones(n, bool), None, field, settings, most, False, np.zeros(0, bool))
     found = periphery.fit(base, start)
     total = found.coefficients + data.over_trend(found.space)
     return Net(
@@ -157,7 +165,7 @@ def approximate_all(
 class PeripheryFit:
     """What an approximation gives: see :class:`Net`."""
 
-    space: TensorSpace
+    space: Space
     coefficients: Floats
     frozen: NDArray[np.bool_]
     rounds: int
@@ -170,7 +178,8 @@ class Periphery:
     """The points to approximate, beside the core that lends its control points.
 
     The regional field's fit stands already, and its core's edge is the patch's edge. ``refit`` solves for it anew
-    where a break is allowed at the seams.
+    where a break is allowed at the seams. ``held`` (k,) marks the finer functions that act on the core's points; the
+    others may move for other points in its patch.
     """
 
     data: Data
@@ -180,11 +189,14 @@ class Periphery:
     settings: FitSettings
     most: int
     refit: bool
+    held: NDArray[np.bool_]
 
-    def fit(self, space: TensorSpace, start: Smoothed) -> PeripheryFit:
+    def fit(self, space: Space, start: Smoothed) -> PeripheryFit:
         """Approximate, and add knots where points stay outside the tolerance, as far as the cap allows."""
         data, tolerance, base = self.data, self.settings.interior_tolerance, space
-        coefficients = self._refitted(space, start) if self.refit else start.coefficients
+        coefficients = start.coefficients
+        if self.refit and isinstance(space, TensorSpace):
+            coefficients = self._refitted(space, start)
         chased = self._chased
         if not chased and self.outer.all():
             return self._unchanged(space, coefficients)
@@ -208,12 +220,12 @@ class Periphery:
             at_u, at_v = self._new_knots(space, plane, excess) if chased else ({}, {})
             if not at_u and not at_v:
                 break
-            space, field = multiply_knots(space, field, at_u, at_v)
+            space, field = with_knots(space, field, at_u, at_v)
         beyond = self._beyond(result.misfit, allowed, limit)
         notes = self._notes(base, beyond, limit, bool((result.released & (beyond > 0)).any()))
         return PeripheryFit(space, result.coefficients, frozen, total, limit, notes)
 
-    def _unchanged(self, space: TensorSpace, coefficients: Floats) -> PeripheryFit:
+    def _unchanged(self, space: Space, coefficients: Floats) -> PeripheryFit:
         """Return the field's own surface, with what it leaves of the points: nothing but the distances is held."""
         misfit = _misfit(space, coefficients, self.data.plane, self.data.value)
         limit = self._limit(misfit)
@@ -230,8 +242,10 @@ class Periphery:
         sound = not self.field.contradictory and self.settings.smoothing == "auto"
         return self.settings.strict or (sound and len(self.data.plane) <= CLOUD)
 
-    def _frozen(self, space: TensorSpace) -> NDArray[np.bool_]:
-        return np.zeros(space.size, bool) if self.core is None else fixed_by_core(space, self.core).ravel()
+    def _frozen(self, space: Space) -> NDArray[np.bool_]:
+        if self.core is None:
+            return np.zeros(space.size, bool)
+        return np.concatenate([fixed_by_core(outer_of(space), self.core).ravel(), self.held])
 
     def _refitted(self, space: TensorSpace, start: Smoothed) -> Floats:
         """Solve for the control points beside the core again, in a space that may break at its edge."""
@@ -291,30 +305,31 @@ class Periphery:
         explained = (allowed > limit) & (misfit <= allowed)
         return np.where((misfit > self.settings.interior_tolerance) & ~explained, misfit, 0.0)
 
-    def _narrowed(self, space: TensorSpace, coefficients: Floats, corrected: Floats) -> tuple[TensorSpace, Floats]:
+    def _narrowed(self, space: Space, coefficients: Floats, corrected: Floats) -> tuple[Space, Floats]:
         """Shorten the spans around the points to pull, as far as the cap allows."""
         ranges = [(np.inf, -np.inf)] * 2 if self.core is None else [self.core[:2], self.core[2:]]
-        narrow = NARROW
+        stretch = 1.0
         while True:
             new = []
             for axis, knots in enumerate((space.knots_u, space.knots_v)):
                 low, high = ranges[axis]
                 x = corrected[(corrected[:, axis] < low) | (corrected[:, axis] > high), axis]
-                added = finer_breaks(np.unique(knots), x, narrow)
+                # Next to the core, short enough for functions that do not act on it.
+                longest = np.minimum(NARROW, np.maximum(np.maximum(low - x, x - high) / BESIDE, FINEST))
+                added = finer_breaks(np.unique(knots), x, stretch * longest)
                 new.append(dict.fromkeys(added[(added < low) | (added > high)].tolist(), 1))
-            shape = (space.shape[0] + len(new[0]), space.shape[1] + len(new[1]))
+            nu, nv = outer_of(space).shape
+            shape = (nu + len(new[0]), nv + len(new[1]))
             if in_patches(shape, self.core, space) <= self.most or not (new[0] or new[1]):
                 break
-            narrow *= 1.1
-        return multiply_knots(space, coefficients, new[0], new[1]) if new[0] or new[1] else (space, coefficients)
+            stretch *= 1.1
+        return with_knots(space, coefficients, new[0], new[1]) if new[0] or new[1] else (space, coefficients)
 
-    def _new_knots(
-        self, space: TensorSpace, plane: Floats, excess: Floats
-    ) -> tuple[dict[float, int], dict[float, int]]:
+    def _new_knots(self, space: Space, plane: Floats, excess: Floats) -> tuple[dict[float, int], dict[float, int]]:
         """Halve the longer span at the worst points first; a knot never runs through the core."""
         breaks = [np.unique(space.knots_u), np.unique(space.knots_v)]
         ranges = [(np.inf, -np.inf)] * 2 if self.core is None else [self.core[:2], self.core[2:]]
-        counts = list(space.shape)
+        counts = list(outer_of(space).shape)
         new: tuple[dict[float, int], dict[float, int]] = ({}, {})
         for point in np.argsort(-excess, kind="stable"):
             if excess[point] == 0:
@@ -336,7 +351,7 @@ class Periphery:
                 new[axis][middle] = 1
         return new
 
-    def _notes(self, base: TensorSpace, beyond: Floats, limit: float, released: bool = False) -> tuple[Message, ...]:
+    def _notes(self, base: Space, beyond: Floats, limit: float, released: bool = False) -> tuple[Message, ...]:
         if limit > self.settings.interior_tolerance and not (beyond > limit).any():
             return (*self._coarse_notes(), *self._noise_notes(beyond))
         return (*self._coarse_notes(), *self._bent_notes(), *self._excess_notes(base, beyond, released))
@@ -390,7 +405,7 @@ class Periphery:
         )
         return (note.with_severity("warning"),)
 
-    def _excess_notes(self, base: TensorSpace, excess: Floats, released: bool) -> tuple[Message, ...]:
+    def _excess_notes(self, base: Space, excess: Floats, released: bool) -> tuple[Message, ...]:
         count = int((excess > 0).sum())
         if not count:
             return ()
@@ -401,7 +416,7 @@ class Periphery:
                 "neighbours closer together than the knots contradict each other there (strict meets them where knots "
                 "allow, and the surface swings between them)",
             )
-        close = crowded(base, self.data.plane) if self.field.contradictory or released else None
+        close = crowded(outer_of(base), self.data.plane) if self.field.contradictory or released else None
         if close is not None:
             reason = message(
                 "fitting.area-far-wider",
@@ -433,28 +448,29 @@ class Periphery:
         return (note.with_severity("warning"),)
 
 
-def finer_breaks(breaks: Floats, x: Floats, longest: float) -> Floats:
-    """Return new breaks, between ascending ones, that leave no span longer than asked for around places.
+def finer_breaks(breaks: Floats, x: Floats, longest: Floats) -> Floats:
+    """Return new breaks, between ascending ones, that leave no span longer than ``longest`` (k,) around places x (k,).
 
     Around a place lie its own span and the parts of others within two of the longest spans of it: where the bumps of
     cubic splines at that place lie. Spans are halved.
     """
     added = []
     for low, high in itertools.pairwise(breaks):
-        near = x[(x > low - 2 * longest) & (x < high + 2 * longest)]
-        if len(near) and high - low > longest:
-            parts = 2 ** int(np.ceil(np.log2((high - low) / longest) - 1e-9))
+        near = (x > low - 2 * longest) & (x < high + 2 * longest)
+        for least in np.unique(longest[near & (longest < high - low)]):
+            parts = 2 ** int(np.ceil(np.log2((high - low) / least) - 1e-9))
             inner = np.linspace(low, high, parts + 1)
-            away = np.abs((inner[:-1] + inner[1:])[:, None] / 2 - near).min(axis=1)
-            close = away < 2 * longest + (high - low) / parts
+            mine = x[near & (longest == least)]
+            away = np.abs((inner[:-1] + inner[1:])[:, None] / 2 - mine).min(axis=1)
+            close = away < 2 * least + (high - low) / parts
             added.append(inner[1:-1][close[:-1] | close[1:]])
-    return np.concatenate(added) if added else np.empty(0)
+    return np.unique(np.concatenate(added)) if added else np.empty(0)
 
 
-def _misfit(space: TensorSpace, coefficients: Floats, plane: Rows, value: Rows) -> Floats:
+def _misfit(space: Space, coefficients: Floats, plane: Rows, value: Rows) -> Floats:
     """Return the distances of values at (n, 2) places, part by part: the rows of a million places fill the memory."""
     misfit = np.empty(len(plane))
-    if coefficients.ndim == 1 and len(plane) > PART:
+    if coefficients.ndim == 1 and len(plane) > PART and isinstance(space, TensorSpace):
         # Heights of very many places: their cells' polynomials take a tenth of the time of the basis functions.
         net = np.zeros((*space.shape, 3))
         net[..., 2] = coefficients.reshape(space.shape)

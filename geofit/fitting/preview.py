@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.checks.check import sigma
 from geofit.data.errors import FitError
 from geofit.data.messages import message
-from geofit.fitting.assemble import divide, patches_of
+from geofit.fitting.assemble import divide, flattened, patches_of
 from geofit.fitting.edit import movable, support
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
@@ -130,8 +130,7 @@ class MovePreview:
         whole = divide(net.space, net.core, given.parametrization.frame, given.split.core is not None)
         unit = np.zeros(net.space.size)
         unit[self.index] = 1 / self.share
-        fine = whole.refined(unit).reshape(whole.space.shape)
-        parts = {part.name: fine[part.rows, part.columns] for part in whole.parts}
+        parts = {part.name: whole.coefficients(part, unit).reshape(part.shape) for part in whole.parts}
         return tuple(
             parts[one.name] if parts[one.name].shape == one.control.shape[:2] else np.zeros(one.control.shape[:2])
             for one in self.surface.patches
@@ -189,15 +188,15 @@ class MovePreview:
             return None
         if model.aside is not None:
             return None
-        space, frame, border = net.space, model.problem.parametrization.frame, []
-        for knots, a in zip((space.knots_u, space.knots_v), divmod(self.index, space.shape[1]), strict=True):
+        support, frame, border = net.space.support(self.index), model.problem.parametrization.frame, []
+        space, before = flattened(net.space, net.coefficients)
+        _, after = flattened(net.space, self._moved(1.0).control())
+        for knots, low, high in ((space.knots_u, *support[:2]), (space.knots_v, *support[2:])):
             breaks = np.unique(knots)
-            first, last = np.searchsorted(breaks, knots[[a, a + space.degree + 1]]).tolist()
+            first, last = np.searchsorted(breaks, (low, high)).tolist()
             border += [float(breaks[max(first - MARGIN, 0)]), float(breaks[min(last + MARGIN, len(breaks) - 1)])]
         area = (border[0], border[1], border[2], border[3])
-        still, other = (
-            patches_of(space, c, area, frame, net.unit)[0] for c in (net.coefficients, self._moved(1.0).control())
-        )
+        still, other = (patches_of(space, c, area, frame, net.unit)[0] for c in (before, after))
         return still, other.control - still.control
 
     @cached_property

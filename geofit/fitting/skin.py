@@ -25,6 +25,7 @@ from scipy.sparse.linalg import splu
 from geofit.data.errors import ExactnessError
 from geofit.data.messages import Message, message
 from geofit.splines import bspline
+from geofit.splines.refined import Space
 from geofit.splines.tensor import TensorSpace
 
 __all__ = [
@@ -189,7 +190,7 @@ def refine_knots(
     plane: Floats,
     pairs: Ints,
     misfit: Floats,
-    degree: int,
+    space_of: Callable[[Floats, Floats], Space],
     allowed: Callable[[tuple[int, int]], bool],
     rounds: int,
     unit: float,
@@ -206,8 +207,8 @@ def refine_knots(
         Which of them are neighbours.
     misfit : (m,) or (m, k) array
         Distance of the field from them, metres.
-    degree : int
-        Degree of the splines.
+    space_of : callable
+        The space that has given breaks in u and v.
     allowed : callable
         Whether a net of so many control points (in u, in v) stays below the cap.
     rounds : int
@@ -227,14 +228,15 @@ def refine_knots(
     rise = np.linalg.norm(off[first] - off[second], axis=1)
     steep = rise > STEEP * unit * np.linalg.norm(plane[first] - plane[second], axis=1)
     for left in range(rounds, -1, -1):
-        space = TensorSpace(bspline.clamped_knots(breaks_u, degree), bspline.clamped_knots(breaks_v, degree), degree)
-        strain = _strain(space, plane, misfit) / limit
+        space = space_of(breaks_u, breaks_v)
+        rows = space.matrix(plane) if isinstance(space, TensorSpace) else space.fine_matrix(plane)
+        strain = _strain(rows, misfit) / limit
         strained = np.argsort(-strain, kind="stable")[: int((strain > 1.0).sum())]
         if not len(strained) or not left:
             break
         new_u, new_v = _between(pairs, steep, strained, plane, breaks_u, breaks_v)
         # Where the cap does not allow all of them, the most strained points come first.
-        while len(strained) and not allowed((space.shape[0] + len(new_u), space.shape[1] + len(new_v))):
+        while len(strained) and not allowed(_shape(space.degree, breaks_u, new_u, breaks_v, new_v)):
             strained = strained[: len(strained) // 2]
             new_u, new_v = _between(pairs, steep, strained, plane, breaks_u, breaks_v)
         if not len(new_u) and not len(new_v):
@@ -243,15 +245,21 @@ def refine_knots(
     return Refined((breaks_u, breaks_v), float(strain.max(initial=0.0)))
 
 
-def _strain(space: TensorSpace, plane: Floats, misfit: Floats) -> Floats:
-    """Return how far the control points near each point must move to meet all points; inf where they cannot."""
-    matrix = space.matrix(plane)
+def _shape(degree: int, breaks_u: Floats, new_u: Floats, breaks_v: Floats, new_v: Floats) -> tuple[int, int]:
+    return len(breaks_u) + len(new_u) - 1 + degree, len(breaks_v) + len(new_v) - 1 + degree
+
+
+def _strain(matrix: csr_array, misfit: Floats) -> Floats:
+    """Return how far the control points near each point must move to meet all points; inf where they cannot.
+
+    ``matrix`` (m, size) holds the rows of the points.
+    """
     gram = (matrix @ matrix.T).tocsc()
     gram.setdiag(gram.diagonal() * (1 + 1e-10))
     change = matrix.T @ splu(gram).solve(misfit)
-    index, _ = space.rows(plane)
-    moved = np.abs(change).reshape(space.size, -1).max(axis=1)[index].max(axis=1)
-    left = np.abs(misfit - matrix @ change).reshape(len(plane), -1).max(axis=1)
+    moved = np.abs(change).reshape(len(change), -1).max(axis=1)
+    moved = np.maximum.reduceat(moved[matrix.indices], matrix.indptr[:-1])
+    left = np.abs(misfit - matrix @ change).reshape(len(misfit), -1).max(axis=1)
     return np.where(left > 1e-4 * np.abs(misfit).max(), np.inf, moved)
 
 

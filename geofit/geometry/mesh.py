@@ -14,6 +14,7 @@ from geofit.data.numbers import is_finite, shown
 from geofit.geometry.cells import Place, tabulate
 from geofit.geometry.clip import clip
 from geofit.geometry.elevation import plan_map
+from geofit.splines import bspline
 from geofit.splines.patch import Patch
 
 __all__ = ["Mesh", "Tolerance", "cell_boxes", "triangle_count", "triangulate", "trim_to_outline"]
@@ -263,9 +264,9 @@ def _shared_edges(patches: tuple[Patch, ...], lines: list[tuple[Floats, Floats]]
 
 
 def _edge_curve(patch: Patch, side: int) -> tuple[Floats, Floats]:
-    """Return control points (with weights) and knots, scaled to 0..1, of an edge in ascending u or v."""
-    weights = np.ones(patch.control.shape[:2]) if patch.weights is None else patch.weights
-    poles = np.concatenate([patch.control, weights[..., None]], axis=2)
+    """Return homogeneous control points and knots, scaled to 0..1, of an edge in ascending u or v."""
+    weights = (np.ones(patch.control.shape[:2]) if patch.weights is None else patch.weights)[..., None]
+    poles = np.concatenate([weights * patch.control, weights], axis=2)
     poles = (poles[:, 0], poles[-1], poles[:, -1], poles[0])[side]
     knots = patch.knots_u if side % 2 == 0 else patch.knots_v
     return poles, (knots - knots[0]) / (knots[-1] - knots[0])
@@ -273,13 +274,26 @@ def _edge_curve(patch: Patch, side: int) -> tuple[Floats, Floats]:
 
 def _same(poles: Floats, knots: Floats, other: Floats, other_knots: Floats) -> bool | None:
     """Whether two curves are one: False as they stand, True if one is reversed, None if they are not."""
-    if poles.shape != other.shape or knots.shape != other_knots.shape:
+    degree = len(knots) - len(poles) - 1
+    if degree != len(other_knots) - len(other) - 1:
         return None
     for flip in (False, True):
         turned, scale = (poles[::-1], 1 - knots[::-1]) if flip else (poles, knots)
-        if np.abs(turned - other).max() <= WELD and np.abs(scale - other_knots).max() <= 1e-9:
+        if np.abs(turned[[0, -1]] - other[[0, -1]]).max() <= WELD and _one_curve(
+            turned, scale, other, other_knots, degree
+        ):
             return flip
     return None
+
+
+def _one_curve(poles: Floats, knots: Floats, other: Floats, other_knots: Floats, degree: int) -> bool:
+    """Whether two curves with equal ends are one on the knots of both: one may have been refined."""
+    own, others = np.round(knots, 9), np.round(other_knots, 9)
+    if np.array_equal(own, others):
+        return bool(np.abs(poles - other).max() <= WELD)
+    both = bspline.common_knots(own, others)
+    first, second = (bspline.insertion_matrix(k, both, degree) @ p for k, p in ((own, poles), (others, other)))
+    return bool(np.abs(first - second).max() <= WELD)
 
 
 def _union(first: Floats, second: Floats) -> Floats:

@@ -27,7 +27,7 @@ from geofit.fitting.posterior import Posterior, posterior, posterior_of_core
 from geofit.geometry.clip import inside
 from geofit.geometry.hull import within_hull
 from geofit.geometry.projection import searchable
-from geofit.splines import bspline
+from geofit.splines.refined import abscissae, from_abscissae, outer_of
 
 __all__ = ["Grid", "PredictionError", "band", "band_directions", "grid_over", "prediction_sd", "uncertainty_on"]
 
@@ -265,13 +265,12 @@ def band(
             )
         )
     model = _model(surface)
-    space = model.net.space
-    u, v = bspline.greville(space.knots_u, space.degree), bspline.greville(space.knots_v, space.degree)
-    abscissae = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    space, factor = model.net.space, float(ndtri((1 + share) / 2))
     with threadpool_limits(limits=1):
-        offset = float(ndtri((1 + share) / 2)) * _sd(model, uncertainty, abscissae, of)
+        offset = from_abscissae(space, lambda plane: factor * _sd(model, uncertainty, plane, of))
     if model.net.coefficients.ndim == 2:
-        offset = offset[:, None] * _normals(model.net, abscissae) * searchable(surface.patches).upwards
+        up = searchable(surface.patches).upwards
+        offset = offset[:, None] * _normals(model.net, abscissae(outer_of(space))) * up
     sides = []
     for sign, word in ((1, "upper"), (-1, "lower")):
         moved = model.with_net(replace(model.net, coefficients=model.net.coefficients + sign * offset))
@@ -299,7 +298,7 @@ def _parameters(surface: HorizonFit, model: Model, xyz: Floats) -> Floats:
 
 def _normals(net: Net, plane: Floats) -> Floats:
     """Return the unit normals of a folded surface at (n, 2) places in units, (n, 3) along the frame's axes."""
-    ways = (net.space.gradient_rows(plane, np.tile(way, (len(plane), 1))) for way in np.eye(2))
+    ways = (outer_of(net.space).gradient_rows(plane, np.tile(way, (len(plane), 1))) for way in np.eye(2))
     along, across = ((values[..., None] * net.coefficients[index]).sum(axis=1) for index, values in ways)
     normal = np.cross(along, across)
     normal /= np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)[:, None]

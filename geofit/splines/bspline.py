@@ -13,6 +13,7 @@ __all__ = [
     "basis",
     "clamped_knots",
     "collocation",
+    "common_knots",
     "energy_matrix",
     "gram_diagonals",
     "greville",
@@ -169,6 +170,15 @@ def gram_diagonals(knots: Floats, degree: int) -> Floats:
         for j in range(degree + 1):
             result[:, :, degree + i - j, first + j] += blocks[:, :, i, j]
     return result
+
+
+def common_knots(*knots: Floats) -> Floats:
+    """Return the knots of several vectors, each as often as the one that has it most often."""
+    values = np.unique(np.concatenate(knots))
+    counts = [
+        np.searchsorted(each, values, side="right") - np.searchsorted(each, values, side="left") for each in knots
+    ]
+    return np.repeat(values, np.max(counts, axis=0))
 
 
 def insertion_matrix(coarse: Floats, fine: Floats, degree: int) -> Floats:

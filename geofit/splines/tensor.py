@@ -73,6 +73,12 @@ class TensorSpace:
         """The space with u and v exchanged: its band is the narrower one if v has the more control points."""
         return TensorSpace(self.knots_v, self.knots_u, self.degree)
 
+    def support(self, index: int) -> tuple[float, float, float, float]:
+        """Return the rectangle (u0, u1, v0, v1) outside of which a function is zero."""
+        a, b = divmod(index, self.shape[1])
+        reach, u, v = self.degree + 1, self.knots_u, self.knots_v
+        return float(u[a]), float(u[a + reach]), float(v[b]), float(v[b + reach])
+
     def rows(self, plane: Floats) -> tuple[Ints, Floats]:
         """Return the coefficients that act at (n, 2) places and their basis values, both (n, (degree + 1)^2)."""
         iu, bu = bspline.basis(self.knots_u, self.degree, plane[:, 0])

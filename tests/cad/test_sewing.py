@@ -8,9 +8,11 @@ from refusals import refused
 from surfaces import ORIGIN, fold, height_field, horizon, nine, split
 
 from geofit.cad import faces as occ
-from geofit.cad.sewing import one_surface, shell, to_shape
+from geofit.cad.sewing import shell, to_shape
 from geofit.data.errors import StitchError
 from geofit.geometry.seams import seams
+from geofit.splines import bspline
+from geofit.splines.patch import Patch
 
 
 def moved(patches, name, shift):
@@ -175,39 +177,6 @@ def test_seams_along_parts_of_edges():
     assert found["left", "low"] < 1e-9
 
 
-def test_one_surface_is_the_whole_with_c1_seams():
-    whole, parts = nine()
-    rng = np.random.default_rng(0)
-    one = one_surface(horizon(rng.permutation(np.array(parts, dtype=object))))
-    u, v = rng.uniform(0, 1000, 500), rng.uniform(0, 700, 500)
-    np.testing.assert_allclose(one.evaluate(u, v), whole.evaluate(u, v), atol=1e-9)
-    assert max(np.unique(one.knots_u[4:-4], return_counts=True)[1]) == 2
-
-
-def test_one_surface_keeps_a_position_seam():
-    _, parts = nine()
-    kinked = [
-        replace(
-            p,
-            control=p.control + np.array([0, 0, 1.0]) * (p.control[..., :1] - parts[3].control[0, 0, 0]) * 0.1,
-        )
-        if p.name.startswith("p0")
-        else p
-        for p in parts
-    ]
-    one = one_surface(horizon(kinked))
-    assert max(np.unique(one.knots_u[4:-4], return_counts=True)[1]) == 3
-    assert max(np.unique(one.knots_v[4:-4], return_counts=True)[1]) == 2
-
-
-def test_one_surface_needs_a_grid():
-    _, parts = nine()
-    with refused(StitchError, "cad.patches-not-a-grid"):
-        one_surface(horizon(parts[:8]))
-    with refused(StitchError, "cad.patches-too-far-to-merge"):
-        one_surface(horizon(moved(parts, "p11", [0, 0, 0.01])))
-
-
 def test_surface_modules_do_not_load_opencascade():
     import subprocess
     import sys
@@ -216,3 +185,21 @@ def test_surface_modules_do_not_load_opencascade():
     code = f"import {rooms}, sys; print('OCP' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
     assert done.stdout.strip() == "False"
+
+
+def test_a_patch_that_is_finer_than_its_neighbours_is_sewn_all_the_same():
+    _, parts = nine()
+    finer = []
+    for part in parts:
+        knots = [np.sort(np.concatenate([k, np.convolve(np.unique(k), [0.5, 0.5], "valid")])) for k in knots_of(part)]
+        to_u, to_v = (bspline.insertion_matrix(old, new, 3) for old, new in zip(knots_of(part), knots, strict=True))
+        control = np.einsum("ai,bj,ijk->abk", to_u, to_v, part.control)
+        finer.append(Patch(part.name, (3, 3), knots[0], knots[1], control) if part.name == "p11" else part)
+    assert all(seam.gap < 1e-9 for seam in seams(finer))
+    shape = shell(horizon(finer))
+    assert len(occ.faces_of(shape)) == 9
+    assert edge_counts(shape).count(2) == 12
+
+
+def knots_of(patch):
+    return patch.knots_u, patch.knots_v

@@ -58,7 +58,7 @@ def test_nothing_moves_outside_the_supports_near_the_worst_points(fitted):
     better = pull_to_worst(net, parametrization, ~split.inside, d)
     moved = better.coefficients != net.coefficients
     acting = np.zeros(net.space.size, bool)
-    acting[net.space.rows(parametrization.plane[bad] / net.unit)[0].ravel()] = True
+    acting[net.space.matrix(parametrization.plane[bad] / net.unit).indices] = True
     assert moved.any()
     assert not (moved & ~acting).any()
     assert not (moved & net.frozen).any()

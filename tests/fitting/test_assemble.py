@@ -3,9 +3,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geofit.fitting.assemble import carried, multiply_knots, patches_of
+from geofit.fitting.assemble import carried, divide, multiply_knots, patches_of
 from geofit.geometry.frame import Frame
+from geofit.geometry.mesh import triangulate
+from geofit.geometry.seams import seams
 from geofit.splines import bspline
+from geofit.splines.refined import RefinedSpace
 from geofit.splines.tensor import TensorSpace
 
 UNIT = 25.0
@@ -183,3 +186,59 @@ def test_other_knots_carry_a_surface_the_better_the_finer_they_are():
         fine, net = carried(space, coefficients, knots, knots)
         off.append(float(np.abs(fine.matrix(at) @ net - space.matrix(at) @ coefficients).max()))
     assert off[1] < 0.2 * off[0]
+
+
+def finer_core(seed=0, columns=None):
+    """A surface whose core has three times as many spans."""
+    outer, fine = space_of(), []
+    for knots, low, high in ((outer.knots_u, *CORE[:2]), (outer.knots_v, *CORE[2:])):
+        own = np.unique(knots[(knots >= low) & (knots <= high)])
+        fine.append(bspline.clamped_knots(np.unique(own[:-1, None] + np.diff(own)[:, None] * (0, 1 / 3, 2 / 3, 1)), 3))
+    space = RefinedSpace(outer, TensorSpace(fine[0], fine[1], 3))
+    shape = (space.size,) if columns is None else (space.size, columns)
+    return space, np.random.default_rng(seed).normal(0, 3, shape)
+
+
+@pytest.mark.parametrize("columns", [None, 3])
+def test_a_finer_core_is_a_patch_with_knots_of_its_own(columns):
+    space, coefficients = finer_core(columns=columns)
+    turn = frame(20)
+    patches = patches_of(space, coefficients, CORE, turn, UNIT)
+    coarse = patches_of(space.outer, coefficients[: space.outer.size], CORE, turn, UNIT)
+    assert [p.name for p in patches] == [p.name for p in coarse]
+    for patch, plain in zip(patches, coarse, strict=True):
+        u0, u1, v0, v1 = patch.domain
+        u, v = np.random.default_rng(1).uniform((u0, v0), (u1, v1), (200, 2)).T
+        wanted = unsplit(space, coefficients, np.column_stack([u, v]) / UNIT, turn)
+        np.testing.assert_allclose(patch.evaluate(u, v), wanted, atol=1e-11)
+        if patch.name != "core":
+            np.testing.assert_array_equal(patch.control, plain.control)
+    assert patches[0].control.size > 3 * coarse[0].control.size
+
+
+def test_a_finer_core_has_closed_and_tangent_seams_and_triangles_without_cracks():
+    space, coefficients = finer_core()
+    patches = patches_of(space, coefficients, CORE, frame(), UNIT)
+    found = seams(patches)
+    assert len(found) == 12
+    assert max(seam.gap for seam in found) < 1e-9
+    assert max(seam.angle for seam in found) < 1e-6
+    mesh = triangulate(patches, np.zeros(3), 0.05)
+    edges = np.sort(np.concatenate([mesh.triangles[:, [0, 1]], mesh.triangles[:, [1, 2]], mesh.triangles[:, [2, 0]]]))
+    single, counts = np.unique(edges, axis=0, return_counts=True)
+    assert counts.max() == 2
+    # Free edges lie on the border of the whole surface.
+    rim = mesh.points[single[counts == 1]]
+    on_border = np.isclose(rim[..., :2] % (8 * UNIT), 0, atol=1e-9) | np.isclose(rim[..., :2], 8 * UNIT)
+    assert on_border.any(axis=2).all()
+
+
+def test_a_coefficient_moves_the_control_point_of_a_part_by_the_share_that_is_stated():
+    space, _ = finer_core()
+    division = divide(space, CORE, frame())
+    for part in division.parts:
+        for i, j in ((0, 0), (1, part.shape[1] - 1), (part.shape[0] // 2, part.shape[1] // 2), (3, 3)):
+            index, share = division.acting_most(part, i, j)
+            moved = division.coefficients(part, np.eye(space.size)[index]).reshape(part.shape)
+            assert moved[i, j] == pytest.approx(share)
+            assert share > 0

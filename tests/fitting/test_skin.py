@@ -133,7 +133,7 @@ def test_separate_lowers_the_strain_of_close_neighbours():
     plane = np.concatenate([plane, plane[:1] + np.array((0.0, 0.02))])
     misfit = np.append(misfit, misfit[0] + 1.0)
     u, v = np.arange(7.0), np.arange(6.0)
-    found = refine_knots(u, v, plane, neighbour_pairs(plane), misfit, 3, lambda shape: True, 20, 1.0)
+    found = refine_knots(u, v, plane, neighbour_pairs(plane), misfit, space_of, lambda shape: True, 20, 1.0)
     new_u, new_v = found.breaks
     assert found.strain <= 1
     assert np.isin(u, new_u).all()
@@ -146,7 +146,7 @@ def test_separate_lowers_the_strain_of_close_neighbours():
 def test_separate_leaves_calm_knots_and_minds_the_cap():
     plane, misfit = spread(8)
     u, v = np.arange(7.0), np.arange(6.0)
-    calm = refine_knots(u, v, plane, neighbour_pairs(plane), misfit, 3, lambda shape: True, 20, 1.0).breaks
+    calm = refine_knots(u, v, plane, neighbour_pairs(plane), misfit, space_of, lambda shape: True, 20, 1.0).breaks
     np.testing.assert_array_equal(calm[0], u)
     np.testing.assert_array_equal(calm[1], v)
     plane = np.concatenate([plane, plane[:1] + np.array((0.0, 0.001))])
@@ -158,7 +158,7 @@ def test_separate_leaves_calm_knots_and_minds_the_cap():
             plane,
             neighbour_pairs(plane),
             misfit,
-            3,
+            space_of,
             lambda shape, most=most: shape[0] * shape[1] <= most,
             50,
             1.0,
@@ -173,8 +173,10 @@ def test_where_the_cap_allows_few_knots_they_go_to_the_tightest_pair():
     u, v = np.arange(7.0), np.arange(6.0)
     pairs = neighbour_pairs(plane)
     most = space_of(u, v).shape[0] * (space_of(u, v).shape[1] + 1)
-    free = refine_knots(u, v, plane, pairs, misfit, 3, lambda shape: True, 1, 1.0).breaks
-    capped = refine_knots(u, v, plane, pairs, misfit, 3, lambda shape: shape[0] * shape[1] <= most, 1, 1.0).breaks
+    free = refine_knots(u, v, plane, pairs, misfit, space_of, lambda shape: True, 1, 1.0).breaks
+    capped = refine_knots(
+        u, v, plane, pairs, misfit, space_of, lambda shape: shape[0] * shape[1] <= most, 1, 1.0
+    ).breaks
     assert len(free[0]) + len(free[1]) > len(u) + len(v) + 1, "without a cap more would be laid"
     (added,) = np.setdiff1d(capped[1], v)
     assert abs(added - plane[0, 1]) < 0.03
@@ -189,7 +191,7 @@ def test_neighbours_too_steep_for_relief_get_one_break_and_others_as_many_as_the
     pairs = neighbour_pairs(plane)
     close = {}
     for unit in (1.0, 1e6):
-        found = refine_knots(u, v, plane, pairs, misfit, 3, lambda shape: True, 50, unit).breaks[1]
+        found = refine_knots(u, v, plane, pairs, misfit, space_of, lambda shape: True, 50, unit).breaks[1]
         close[unit] = np.abs(np.setdiff1d(found, v) - plane[0, 1]) < 0.01
     assert close[1.0].sum() == 1
     assert close[1e6].sum() > 1

@@ -24,6 +24,7 @@ from geofit.prediction.examine import examine
 from geofit.splines import bspline
 from geofit.splines.blocks import BlockFactor
 from geofit.splines.matern import MaternPrecision
+from geofit.splines.refined import finest
 from geofit.splines.tensor import RIDGES, TensorSpace
 
 
@@ -117,7 +118,7 @@ def brute_force(surface: HorizonFit, fit: LinearFit, group: np.ndarray) -> np.nd
         index = [place[p] for p in mine]
         among = np.linalg.inv(step.inverse)[np.ix_(index, index)]
         multiplier = np.linalg.solve(among, wanted)
-        free = (~net.frozen).astype(float) if step.slack else np.ones(rows.shape[1])
+        free = (~net.frozen if step.slack else finest(net.space)).astype(float)
         height = height + rows @ (free * (rows[mine].T @ multiplier))
     return given.value[group] - height[group]
 
