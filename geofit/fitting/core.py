@@ -21,6 +21,7 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
 from geofit.fitting.approximate import fixed_by_core
 from geofit.fitting.assemble import carried, multiply_knots
+from geofit.fitting.core_noise import near_noise
 from geofit.fitting.core_patch import (
     FIELD_SPAN,
     LAID,
@@ -66,6 +67,8 @@ RESOLVED = 0.03
 RESOLVED_DRAWN, DRAWN = 0.2, 0.9
 #: The same for noise within the interior tolerance.
 LITTLE = 0.05
+#: Share of the noise by which the nearest points must differ at least: what they share more of is relief.
+SHARED = 0.5
 #: No finer functions act on a core whose knots run through the whole surface.
 NONE = np.zeros(0, bool)
 
@@ -256,16 +259,20 @@ def _breaks(
 def _refuse_noise(core: Core, drawn: float) -> None:
     """Refuse to pass through points whose noise is not small against their relief.
 
-    ``drawn`` is the share of them on named sections.
+    ``drawn`` is the share of them on named sections. What the field takes for noise is relief where the nearest points
+    differ by far less.
 
     Raises
     ------
     ExactnessError
         If it is not.
     """
-    field = core.field if core.relief is None else core.relief.field
+    field, inside = core.field if core.relief is None else core.relief.field, np.flatnonzero(core.inside)
     resolved = (RESOLVED_DRAWN if drawn >= DRAWN else RESOLVED) * field.spread
-    if field.noise > max(resolved, min(core.settings.interior_tolerance, LITTLE * field.spread)):
+    limit = max(resolved, min(core.settings.interior_tolerance, LITTLE * field.spread))
+    if field.noise <= limit:
+        return
+    if near_noise(core.data.plane[inside], core.misfit(inside)) > max(limit, SHARED * field.noise):
         raise ExactnessError(
             message(
                 "fitting.points-support-to-noise",
