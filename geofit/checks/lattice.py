@@ -40,6 +40,13 @@ class PatchLattice:
         """The middles of the spans alone."""
         return PatchLattice(self.points[1::2, 1::2], self.normal[1::2, 1::2], self.within[1::2, 1::2])
 
+    @property
+    def areas(self) -> Floats:
+        """About the area of each span, m^2, which its middle represents."""
+        along = np.linalg.norm(self.points[2::2, 1::2] - self.points[:-2:2, 1::2], axis=-1)
+        across = np.linalg.norm(self.points[1::2, 2::2] - self.points[1::2, :-2:2], axis=-1)
+        return np.asarray(along * across * np.linalg.norm(self.normal[1::2, 1::2], axis=-1))
+
 
 def lattices(surface: FittedSurface) -> tuple[PatchLattice, ...]:
     """Lay a lattice over each patch, fine enough that no wiggle of one control point falls between its places."""

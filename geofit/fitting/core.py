@@ -69,6 +69,8 @@ RESOLVED_DRAWN, DRAWN = 0.2, 0.9
 LITTLE = 0.05
 #: Share of the noise by which the nearest points must differ at least: what they share more of is relief.
 SHARED = 0.5
+#: Spans between neighbours of one section, as a share of their distance, where knots run through the whole surface.
+ALONG = 1.8
 #: No finer functions act on a core whose knots run through the whole surface.
 NONE = np.zeros(0, bool)
 
@@ -239,7 +241,7 @@ def _breaks(
     narrow = NARROW * (core[1] - core[0]) / max(len(lines.u), 1)
     required_u = without_repeats(within, (area[0], core[0], core[1], area[1]), narrow)
     required_v = np.array([area[2], core[2], core[3], area[3]])
-    sizes_u, sizes_v = span_sizes(given, plane, pairs, limits)
+    sizes_u, sizes_v = span_sizes(given, plane, pairs, limits, ALONG)
     stretch = 1.0
     while True:
         scale = np.array([1.0, 1.0, stretch])

@@ -51,8 +51,8 @@ LAID = (0.95, 0.6)
 #: Span of the field's space where the knots are finer for the core's points alone, in units. Spans longer than the
 #: other were chosen by the likelihood, and are kept: the field there is smoother than on finer ones.
 FIELD_SPAN, SIMPLE = 0.3, 0.55
-#: Spans between neighbours of one section, and of neighbouring sections, as a share of their distance.
-ALONG, ACROSS = 1.8, 1.0
+#: Spans between neighbouring points, as a share of their distance.
+BETWEEN = 0.9
 #: Spans beside a section line, as a share of the distance to the next, and how many there are on each side.
 HUG, HUGGED = 1 / 8, 1
 #: Lines nearer to the core's edge or to each other than this share of their mean distance get one knot.
@@ -239,15 +239,16 @@ def _patch_of(core: Core, plane: Floats, limits: Limits) -> tuple[Rectangle, tup
     return (sides[0], sides[1], sides[2], sides[3]), (room_u, room_v)
 
 
-def span_sizes(core: Core, plane: Floats, pairs: Ints, limits: Limits) -> tuple[Floats, Floats]:
+def span_sizes(core: Core, plane: Floats, pairs: Ints, limits: Limits, along: float = BETWEEN) -> tuple[Floats, Floats]:
     """Return, for u and v, rows (low, high, size) of the spans that a core's points ask for.
 
-    What makes the surface pass through a point must be narrow in both directions: across the sections spans hug each
-    of them, along them they follow the closest neighbours of any.
+    ``along`` is the share of the distance between neighbours of one straight section. What makes the surface pass
+    through a point must be narrow in both directions: across the sections spans hug each of them, along them they
+    follow the closest neighbours of any.
     """
     lines = core.lines
-    sizes_u = _beside_lines(lines) if lines.straight else pair_sizes(plane, pairs, 0, ACROSS)
-    sizes_v = pair_sizes(plane, pairs, 1, limits.closer * (ALONG if lines.straight else ACROSS))
+    sizes_u = _beside_lines(lines) if lines.straight else pair_sizes(plane, pairs, 0, BETWEEN)
+    sizes_v = pair_sizes(plane, pairs, 1, limits.closer * (along if lines.straight else BETWEEN))
     if core.relief is None:
         return sizes_u, sizes_v
     following_u, following_v = core.relief.spans()
