@@ -20,7 +20,7 @@ from geofit.fitting.skin import regularized_correction
 from geofit.splines.refined import Space
 from geofit.splines.tensor import Factor, TensorSpace, band_times
 
-__all__ = ["Approximation", "approximate", "fixed_by_core", "solved_beside"]
+__all__ = ["Approximation", "approximate", "fixed_by_core", "solved_beside", "swinging_points"]
 
 Floats = NDArray[np.float64]
 
@@ -106,7 +106,7 @@ def approximate(
         rim = RIM * tolerance[held]
         share = (1 - rim / np.maximum(length, rim)).reshape(-1, *[1] * (misfit.ndim - 1))
         corrected = best + regularized_correction(csr_array(matrix[held]), share * misfit[held], ~frozen)
-        swinging = np.zeros(len(plane), bool) if strict else _swinging(matrix, corrected - start, first, held)
+        swinging = np.zeros(len(plane), bool) if strict else swinging_points(matrix, corrected - start, first, held)
         if swinging.any():
             released |= swinging
             best, misfit, held = start, height - matrix @ start, np.zeros(len(plane), bool)
@@ -119,8 +119,13 @@ def approximate(
     return Approximation(best, _size(misfit), done, released)
 
 
-def _swinging(matrix: csr_array, change: Floats, misfit: Floats, held: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return (m,) which of the points that are held make the surface swing around them."""
+def swinging_points(
+    matrix: csr_array, change: Floats, misfit: Floats, held: NDArray[np.bool_], times: float = SWING
+) -> NDArray[np.bool_]:
+    """Return (m,) which of the points that are held make the surface swing around them.
+
+    There a control point moves by more than so many ``times`` the largest misfit around.
+    """
     acting = csr_array(matrix[held])
     moved = _size(change)[acting.indices] * (acting.data > 0)
     moved = np.maximum.reduceat(moved, acting.indptr[:-1]) if acting.nnz else np.zeros(0)
@@ -130,7 +135,7 @@ def _swinging(matrix: csr_array, change: Floats, misfit: Floats, held: NDArray[n
     np.maximum.at(around, acting.indices, misfit[held][rows])
     largest = np.maximum.reduceat(around[acting.indices], acting.indptr[:-1]) if acting.nnz else np.zeros(0)
     result = np.zeros(len(held), bool)
-    result[np.flatnonzero(held)[moved > SWING * largest]] = True
+    result[np.flatnonzero(held)[moved > times * largest]] = True
     return result
 
 

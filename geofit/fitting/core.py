@@ -137,6 +137,10 @@ def fit_with_core(
                 continue
             # Exactness outranks economy; a cap that a person gave is kept.
             if settings.max_control_points is not None or limits.most > LAST_CAP * len(data.plane):
+                if local:
+                    # Of few control points, those that act across the edges of a patch are needed, too.
+                    local, limits = False, first
+                    continue
                 if not (inside & between).any():
                     raise
                 # The drawn curves of a fold outrank the points between them.

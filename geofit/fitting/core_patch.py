@@ -13,16 +13,20 @@ from operator import itemgetter
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array, vstack
 
+from geofit.data.allowance import allowance
+from geofit.data.errors import ExactnessError
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
+from geofit.fitting.approximate import RIM, swinging_points
 from geofit.fitting.assemble import carried
 from geofit.fitting.core_relief import CoreRelief
 from geofit.fitting.field import FieldChoice
 from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes
 from geofit.fitting.net import in_patches, smoothed
 from geofit.fitting.resolution import longest_span
-from geofit.fitting.skin import Lines, minimum_norm_correction, refine_knots
+from geofit.fitting.skin import OVERSHOOT, Lines, minimum_norm_correction, refine_knots
 from geofit.splines import bspline
 from geofit.splines.refined import RefinedSpace, Space
 from geofit.splines.tensor import TensorSpace
@@ -62,10 +66,12 @@ NARROW = 0.2
 ROOM, IN_ROOM = 0.5, 2.5
 #: Points of the periphery nearer to the core's than this share of its room lie in its patch.
 CLOSE = 0.5
+#: A point on which the finer functions act with less than this sum of squares is not reached by them.
+REACHED = 0.003
 #: An edge of the patch nearer to the area's than this share of the spans there is the area's.
 SLIVER = 0.3
-#: How many times longer the spans in the patch become, for the cap, before those outside do.
-YIELDING = 2.0
+#: How many times longer the spans in the patch become, for the cap, before those outside do, and those of the field.
+YIELDING = (2.0, 50.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,12 +178,46 @@ def through_points_locally(core: Core, limits: Limits) -> Through:
     more = np.zeros(len(space.inner))
     if core.relief is not None:
         more = core.relief.departure(space.fine, lambda at: space.outer.matrix(at) @ start)[space.inner]
-    finest = space.fine_matrix(plane)
-    more = more + minimum_norm_correction(
-        finest, data.value[chosen] - space.outer.matrix(plane) @ start - finest @ more
-    )
-    held = np.bincount(finest.indices, minlength=len(more)) > 0
+    more, held = _through(core, chosen, space, start, more)
     return Through(base, space, np.concatenate([start, more]), regional.plane, None, held)
+
+
+def _through(
+    core: Core, chosen: Ints, space: RefinedSpace, start: Floats, more: Floats
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """Let the finer functions, with coefficients ``more``, pass through the core's points.
+
+    Others in the core's patch are kept within the tolerance: no function outside reaches them without acting on the
+    core. Return also which functions act on the core's points.
+    """
+    data = core.data
+    finest = space.fine_matrix(data.plane[:])
+    off = np.asarray(data.value[:] - space.outer.matrix(data.plane[:]) @ start - finest @ more)
+    mine = csr_array(finest[chosen])
+    held = np.bincount(mine.indices, minlength=len(more)) > 0
+    settings, acting = core.settings, np.asarray(finest.power(2).sum(axis=1)).ravel() > REACHED
+    others = np.flatnonzero(acting & ~core.inside)
+    if settings.smoothing != "auto" or core.field.contradictory:
+        others = others[:0]
+    limit = np.full(len(others), settings.interior_tolerance)
+    if not settings.strict:
+        limit = allowance(data.accuracy[others], settings.interior_tolerance, settings.interior_tolerance)
+    size = np.abs(off[others])
+    wanted = np.where(size > limit, off[others] * (1 - RIM * limit / np.maximum(size, limit)), 0.0)
+    kept = np.ones(len(others), bool)
+    while kept.any():
+        both = csr_array(vstack([mine, finest[others[kept]]]))
+        left = np.concatenate([off[chosen], wanted[kept]])
+        try:
+            change = minimum_norm_correction(both, left)
+        except ExactnessError:
+            break
+        # Points that contradict the core are let go, and reported.
+        swinging = swinging_points(both, change, np.abs(left), np.ones(len(left), bool), OVERSHOOT)[len(chosen) :]
+        if not swinging.any():
+            return more + change, held
+        kept[kept] = ~swinging
+    return more + minimum_norm_correction(mine, off[chosen]), held
 
 
 def _laid(core: Core, plane: Floats, pairs: Ints, limits: Limits, share: float) -> RefinedSpace:
@@ -192,12 +232,12 @@ def _laid(core: Core, plane: Floats, pairs: Ints, limits: Limits, share: float) 
     narrow = NARROW * (core.rectangle[1] - core.rectangle[0]) / max(len(lines.u), 1)
     stretch = 1.0
     while True:
-        longest = limits.longest * max(1.0, stretch / YIELDING)
+        wider, given = (max(1.0, stretch / times) for times in YIELDING)
         outer, inner = [], []
         for axis, size in ((0, sizes[0]), (1, sizes[1])):
             low, high = patch[2 * axis : 2 * axis + 2]
-            field = np.array([[low, high, min(FIELD_SPAN, limits.longest)]])
-            breaks = graded_breaks([area[2 * axis], low, high, area[2 * axis + 1]], longest, field)
+            field = np.array([[low, high, FIELD_SPAN * given]])
+            breaks = graded_breaks([area[2 * axis], low, high, area[2 * axis + 1]], wider * limits.longest, field)
             within = breaks[(breaks >= low) & (breaks <= high)]
             if axis == 0:
                 within = without_repeats(lines.u[(lines.u > low) & (lines.u < high)], within, narrow)
@@ -224,7 +264,8 @@ def _patch_of(core: Core, plane: Floats, limits: Limits) -> tuple[Rectangle, tup
             continue
         axis, way = side // 2, 1.0 if side % 2 else -1.0
         last = float((way * plane[:, axis]).max())
-        beside = others[(others[:, 1 - axis] >= given[2 - 2 * axis]) & (others[:, 1 - axis] <= given[3 - 2 * axis])]
+        low, high = given[2 - 2 * axis] - least, given[3 - 2 * axis] + least
+        beside = others[(others[:, 1 - axis] >= low) & (others[:, 1 - axis] <= high)]
         apart = np.sort(way * beside[:, axis]) - last
         room = max(way * edge - last, least)
         if core.relief is None:

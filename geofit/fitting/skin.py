@@ -255,12 +255,14 @@ def _strain(matrix: csr_array, misfit: Floats) -> Floats:
     ``matrix`` (m, size) holds the rows of the points.
     """
     gram = (matrix @ matrix.T).tocsc()
-    gram.setdiag(gram.diagonal() * (1 + 1e-10))
+    # A point on which no function acts is left where it is.
+    gram.setdiag(np.maximum(gram.diagonal() * (1 + 1e-10), np.finfo(float).tiny))
     change = matrix.T @ splu(gram).solve(misfit)
-    moved = np.abs(change).reshape(len(change), -1).max(axis=1)
-    moved = np.maximum.reduceat(moved[matrix.indices], matrix.indptr[:-1])
+    moved = np.abs(change).reshape(len(change), misfit[0].size).max(axis=1)
+    near = np.zeros(matrix.shape[0])
+    np.maximum.at(near, np.repeat(np.arange(len(near)), np.diff(matrix.indptr)), moved[matrix.indices])
     left = np.abs(misfit - matrix @ change).reshape(len(misfit), -1).max(axis=1)
-    return np.where(left > 1e-4 * np.abs(misfit).max(), np.inf, moved)
+    return np.where(left > 1e-4 * np.abs(misfit).max(), np.inf, near)
 
 
 def _between(
