@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
@@ -14,15 +12,13 @@ Floats = NDArray[np.float64]
 
 #: One of so many points, but at least the second number, is looked at: those with the nearest neighbours.
 NEAREST, FEWEST = 3, 20
-#: Median of the absolute value of a normal deviate.
-NORMAL = 0.6745
 
 
 def near_noise(plane: Floats, misfit: Floats) -> float:
     """Return the noise of points as the nearest of them show it, in units of the misfits (1 sigma).
 
     A field counts relief that its spans cannot follow as noise. Of that, two points share the more the nearer to each
-    other they are; of noise, they share none.
+    other they are; of noise, they share none. Single wrong points count: they are noise, too.
 
     Parameters
     ----------
@@ -33,4 +29,4 @@ def near_noise(plane: Floats, misfit: Floats) -> float:
     """
     apart, index = (np.asarray(found) for found in KDTree(plane).query(plane, k=2))
     near = np.argsort(apart[:, 1], kind="stable")[: max(len(plane) // NEAREST, FEWEST)]
-    return float(np.median(np.abs(misfit[near] - misfit[index[near, 1]]))) / (math.sqrt(2) * NORMAL)
+    return float(np.sqrt(np.mean((misfit[near] - misfit[index[near, 1]]) ** 2) / 2))
