@@ -205,17 +205,17 @@ def _through_points(core: Core, limits: Limits, linear: bool) -> Through:
         breaks, counted = _breaks(plane, pairs, core, limits, laid)
         span = min(FIELD_SPAN, limits.longest)
         some = [some_breaks(along, span) for along in breaks]
-        base = core.coarse if on_coarse(core, degree) else _space(some[0], some[1], degree)
+        base = core.coarse if on_coarse(core, degree) else TensorSpace.on_breaks(some[0], some[1], degree)
         regional = smoothed(data, base, core.field)
         misfit = data.value[chosen] - core.field_at(base, regional.coefficients, plane)
         refined = refine_knots(
-            *breaks, plane, pairs, misfit, lambda u, v: _space(u, v, degree), counted, rounds, data.unit
+            *breaks, plane, pairs, misfit, lambda u, v: TensorSpace.on_breaks(u, v, degree), counted, rounds, data.unit
         )
         tried.append((refined.strain, base, regional, refined.breaks))
         if refined.strain <= 1.0:
             break
     _, base, regional, breaks = min(tried, key=itemgetter(0))
-    fine = _space(*breaks, degree)
+    fine = TensorSpace.on_breaks(*breaks, degree)
     _, start = carried(base, regional.coefficients, fine.knots_u, fine.knots_v)
     if core.relief is not None:
         start = core.relief.blended(fine, start)
@@ -251,7 +251,7 @@ def _breaks(
         scale = np.array([1.0, 1.0, stretch])
         breaks_u = graded_breaks(required_u, limits.longest * stretch, sizes_u * scale)
         breaks_v = graded_breaks(required_v, limits.longest * stretch, sizes_v * scale)
-        space = _space(breaks_u, breaks_v, degree)
+        space = TensorSpace.on_breaks(breaks_u, breaks_v, degree)
         if in_patches(space.shape, core, space) <= laid * limits.most or stretch > 1e3:
             break
         stretch *= 1.1
@@ -388,10 +388,6 @@ def _lofted(space: TensorSpace, coefficients: Floats, core: Core) -> Floats:
     if len(drawn) == len(value):
         return curves
     return curves + minimum_norm_correction(matrix, value - matrix @ curves)
-
-
-def _space(breaks_u: Floats, breaks_v: Floats, degree: int) -> TensorSpace:
-    return TensorSpace(bspline.clamped_knots(breaks_u, degree), bspline.clamped_knots(breaks_v, degree), degree)
 
 
 def _inner(edges: tuple[float, float], knots: Floats) -> list[float]:

@@ -27,7 +27,6 @@ from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes
 from geofit.fitting.net import in_patches, smoothed
 from geofit.fitting.resolution import longest_span
 from geofit.fitting.skin import OVERSHOOT, Lines, minimum_norm_correction, refine_knots
-from geofit.splines import bspline
 from geofit.splines.refined import RefinedSpace, Space
 from geofit.splines.tensor import TensorSpace
 
@@ -57,7 +56,7 @@ LAID = (0.95, 0.6)
 FIELD_SPAN, SIMPLE = 0.3, 0.55
 #: Spans between neighbouring points, as a share of their distance.
 BETWEEN = 0.9
-#: Spans beside a section line, as a share of the distance to the next, and how many there are on each side.
+#: Spans next to a section line, as a share of the distance to the next line, and their number on each side.
 HUG, HUGGED = 1 / 8, 1
 #: Lines nearer to the core's edge or to each other than this share of their mean distance get one knot.
 NARROW = 0.2
@@ -163,10 +162,10 @@ def through_points_locally(core: Core, limits: Limits) -> Through:
         misfit = data.value[chosen] - core.field_at(base, regional.coefficients, plane)
 
         def finer(breaks_u: Floats, breaks_v: Floats, outer: TensorSpace = given.outer) -> RefinedSpace:
-            return RefinedSpace(outer, _clamped(breaks_u, breaks_v, degree))
+            return RefinedSpace(outer, TensorSpace.on_breaks(breaks_u, breaks_v, degree))
 
-        def allowed(shape: tuple[int, int], beside: int = _count(given) - given.fine.size) -> bool:
-            return beside + shape[0] * shape[1] <= limits.most
+        def allowed(shape: tuple[int, int], elsewhere: int = _count(given) - given.fine.size) -> bool:
+            return elsewhere + shape[0] * shape[1] <= limits.most
 
         breaks = np.unique(given.fine.knots_u), np.unique(given.fine.knots_v)
         refined = refine_knots(*breaks, plane, pairs, misfit, finer, allowed, rounds, data.unit)
@@ -243,7 +242,9 @@ def _laid(core: Core, plane: Floats, pairs: Ints, limits: Limits, share: float) 
                 within = without_repeats(lines.u[(lines.u > low) & (lines.u < high)], within, narrow)
             outer.append(breaks)
             inner.append(graded_breaks(within, limits.longest * stretch, size * np.array([1.0, 1.0, stretch])))
-        space = RefinedSpace(_clamped(outer[0], outer[1], degree), _clamped(inner[0], inner[1], degree))
+        space = RefinedSpace(
+            TensorSpace.on_breaks(outer[0], outer[1], degree), TensorSpace.on_breaks(inner[0], inner[1], degree)
+        )
         if _count(space) <= share * limits.most or stretch > 1e3:
             return space
         stretch *= 1.1
@@ -265,8 +266,8 @@ def _patch_of(core: Core, plane: Floats, limits: Limits) -> tuple[Rectangle, tup
         axis, way = side // 2, 1.0 if side % 2 else -1.0
         last = float((way * plane[:, axis]).max())
         low, high = given[2 - 2 * axis] - least, given[3 - 2 * axis] + least
-        beside = others[(others[:, 1 - axis] >= low) & (others[:, 1 - axis] <= high)]
-        apart = np.sort(way * beside[:, axis]) - last
+        facing = others[(others[:, 1 - axis] >= low) & (others[:, 1 - axis] <= high)]
+        apart = np.sort(way * facing[:, axis]) - last
         room = max(way * edge - last, least)
         if core.relief is None:
             room = min(room, float(apart[apart >= CLOSE * least].min(initial=np.inf)) / 2)
@@ -288,7 +289,7 @@ def span_sizes(core: Core, plane: Floats, pairs: Ints, limits: Limits, along: fl
     follow the closest neighbours of any.
     """
     lines = core.lines
-    sizes_u = _beside_lines(lines) if lines.straight else pair_sizes(plane, pairs, 0, BETWEEN)
+    sizes_u = _at_lines(lines) if lines.straight else pair_sizes(plane, pairs, 0, BETWEEN)
     sizes_v = pair_sizes(plane, pairs, 1, limits.closer * (along if lines.straight else BETWEEN))
     if core.relief is None:
         return sizes_u, sizes_v
@@ -305,7 +306,7 @@ def without_repeats(values: Floats, fixed: Floats | tuple[float, ...], least: fl
     return result
 
 
-def _beside_lines(lines: Lines) -> Floats:
+def _at_lines(lines: Lines) -> Floats:
     """Return (k, 3) rows (low, high, size) of short spans that hug each section line."""
     gaps = np.diff(lines.u)
     size = HUG * np.minimum(np.append(gaps, gaps[-1]), np.insert(gaps, 0, gaps[0]))
@@ -314,7 +315,3 @@ def _beside_lines(lines: Lines) -> Floats:
 
 def _count(space: RefinedSpace) -> int:
     return in_patches(space.outer.shape, space.rectangle, space)
-
-
-def _clamped(breaks_u: Floats, breaks_v: Floats, degree: int) -> TensorSpace:
-    return TensorSpace(bspline.clamped_knots(breaks_u, degree), bspline.clamped_knots(breaks_v, degree), degree)

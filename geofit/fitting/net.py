@@ -53,7 +53,7 @@ Stage = Callable[[str, float], None]
 
 #: Spans between the core and a point next to it that is met, so that some reach it and do not act on the core, and the
 #: shortest of them, in units.
-BESIDE, LEAST = 2.5, 0.01
+AT_CORE, LEAST = 2.5, 0.01
 #: Span around a point that is met within its tolerance, in units: what lies between stays the field's.
 NARROW = 0.15
 #: Shortest span that is still halved for a point outside its tolerance.
@@ -316,7 +316,7 @@ class Periphery:
                 low, high = ranges[axis]
                 x = corrected[(corrected[:, axis] < low) | (corrected[:, axis] > high), axis]
                 # Next to the core, short enough for functions that do not act on it.
-                longest = np.minimum(NARROW, np.maximum(np.maximum(low - x, x - high) / BESIDE, LEAST))
+                longest = np.minimum(NARROW, np.maximum(np.maximum(low - x, x - high) / AT_CORE, LEAST))
                 added = finer_breaks(np.unique(knots), x, stretch * longest)
                 new.append(dict.fromkeys(added[(added < low) | (added > high)].tolist(), 1))
             nu, nv = outer_of(space).shape

@@ -158,5 +158,5 @@ def neighbours(space: Space, some: Bools) -> Bools:
         around = sliding_window_view(np.pad(some.reshape(space.shape), 1), (3, 3))
         return np.asarray(around.any(axis=(2, 3)).ravel())
     outer, fine = space.split(some.astype(float))
-    beside = neighbours(space.fine, fine > 0)[space.inner]
-    return np.concatenate([neighbours(space.outer, outer > 0), beside])
+    finer = neighbours(space.fine, fine > 0)[space.inner]
+    return np.concatenate([neighbours(space.outer, outer > 0), finer])

@@ -53,6 +53,11 @@ class TensorSpace:
     knots_v: Floats
     degree: int = 3
 
+    @classmethod
+    def on_breaks(cls, breaks_u: Floats, breaks_v: Floats, degree: int) -> TensorSpace:
+        """Return the space with simple knots at ascending breaks."""
+        return cls(bspline.clamped_knots(breaks_u, degree), bspline.clamped_knots(breaks_v, degree), degree)
+
     @property
     def shape(self) -> tuple[int, int]:
         """Number of control points in u and v."""

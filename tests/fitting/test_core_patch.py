@@ -31,10 +31,10 @@ def test_neighbours_of_the_core_have_few_knots_of_their_own(site):
     core = patches.pop("core")
     spans = np.diff(np.unique(core.knots_v))
     for name in ("east", "west"):
-        beside = np.unique(patches[name].knots_v)
-        assert len(beside) < 0.6 * len(np.unique(core.knots_v))
-        assert np.isin(beside, core.knots_v).all()
-        assert np.diff(beside).mean() > 2 * spans.mean()
+        coarse = np.unique(patches[name].knots_v)
+        assert len(coarse) < 0.6 * len(np.unique(core.knots_v))
+        assert np.isin(coarse, core.knots_v).all()
+        assert np.diff(coarse).mean() > 2 * spans.mean()
     assert core.control[..., 0].size > 0.6 * site.control_points
     assert max(seam.gap for seam in site.accuracy.seams) < 1e-9
     assert max(seam.angle for seam in site.accuracy.seams) < 1e-4
@@ -46,9 +46,9 @@ def test_no_edge_of_the_patch_is_nearer_to_the_core_s_points_than_to_the_others(
     core, others = plane[site.core], plane[~site.core]
     within = (core > (u0, v0)) & (core < (u1, v1))
     assert within.all()
-    beside = others[(others[:, 1] > v0) & (others[:, 1] < v1)]
+    facing = others[(others[:, 1] > v0) & (others[:, 1] < v1)]
     for edge, way in ((u0, -1), (u1, 1)):
-        beyond = way * (beside[:, 0] - edge)
+        beyond = way * (facing[:, 0] - edge)
         assert 0.99 * (way * (edge - core[:, 0])).min() <= beyond[beyond > 0].min()
 
 
