@@ -22,8 +22,8 @@ __all__ = ["CellSums", "Moments", "cell_sums"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-#: Points that are worked on together: their polynomials stay in the processor's cache.
-_CHUNK = 16_384
+#: Points from which on the sums are compiled: loading them costs as much as a few thousand points.
+COMPILED = 5_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,12 +63,11 @@ class Moments:
     @classmethod
     def of(cls, lines_u: Floats, lines_v: Floats, degree: int, plane: Rows, z: Rows, weight: Floats) -> Moments:
         """Sum (n, 2) places with heights (n,) and weights (n,)."""
-        shape = len(lines_u) - 1, len(lines_v) - 1
-        sums = np.zeros((shape[0] * shape[1], 2 * degree + 1, 3 * degree + 2))
+        sums = np.zeros((len(lines_u) - 1, len(lines_v) - 1, 2 * degree + 1, 3 * degree + 2))
+        add = _add_by_cell if len(z) < COMPILED else _add_by_point
         for parts in blocks(plane, z, weight):
-            _add(sums, lines_u, lines_v, degree, *parts)
-        grid = sums.reshape(*shape, *sums.shape[1:])
-        return cls(lines_u, lines_v, grid[..., : 2 * degree + 1], grid[..., : degree + 1, 2 * degree + 1 :])
+            add(sums, lines_u, lines_v, *parts)
+        return cls(lines_u, lines_v, sums[..., : 2 * degree + 1], sums[..., : degree + 1, 2 * degree + 1 :])
 
     @property
     def turned(self) -> Moments:
@@ -100,26 +99,33 @@ def cell_sums(knots_u: Floats, knots_v: Floats, degree: int, plane: Rows, z: Row
     return Moments.of(np.unique(knots_u), np.unique(knots_v), degree, plane, z, weight).on(knots_u, knots_v)
 
 
-def _add(sums: Floats, lines_u: Floats, lines_v: Floats, p: int, plane: Floats, z: Floats, weight: Floats) -> None:
-    """Add points to the sums of their cells, (cells, 2p + 1, 3p + 2), those with the heights last."""
+def _add_by_cell(sums: Floats, lines_u: Floats, lines_v: Floats, plane: Floats, z: Floats, weight: Floats) -> None:
+    """Add (n, 2) places with heights and weights to sums (k, m, 2p + 1, 3p + 2), those with the heights last."""
     if not len(z):
         return
-    across = len(lines_v) - 1
+    across, count = len(lines_v) - 1, sums.shape[2]
+    flat = sums.reshape(-1, *sums.shape[2:])
     cell = bspline.intervals(lines_u, plane[:, 0]) * across + bspline.intervals(lines_v, plane[:, 1])
-    order = np.argsort(cell.astype(np.min_scalar_type(len(sums))), kind="stable")
+    order = np.argsort(cell.astype(np.min_scalar_type(len(flat))), kind="stable")
     cell, plane, z, weight = cell[order], plane.take(order, axis=0), z[order], weight[order]
-    for start in range(0, len(z), _CHUNK):
-        part = slice(start, start + _CHUNK)
-        first = np.flatnonzero(np.diff(cell[part], prepend=-1))
-        ends = np.append(first[1:], len(cell[part]))
-        at = cell[part][first]
-        left, right = np.empty((2 * p + 1, ends[-1])), np.empty((3 * p + 2, ends[-1]))
-        _legendre(lines_u, at // across, ends - first, plane[part, 0], left)
-        _legendre(lines_v, at % across, ends - first, plane[part, 1], right[: 2 * p + 1])
-        np.multiply(right[: p + 1], z[part], out=right[2 * p + 1 :])
-        left *= weight[part]
-        for k, low, high in zip(at.tolist(), first.tolist(), ends.tolist(), strict=True):
-            sums[k] += left[:, low:high] @ right[:, low:high].T
+    first = np.flatnonzero(np.diff(cell, prepend=-1))
+    ends, at = np.append(first[1:], len(cell)), cell[first]
+    left, right = np.empty((count, len(z))), np.empty((sums.shape[3], len(z)))
+    _legendre(lines_u, at // across, ends - first, plane[:, 0], left)
+    _legendre(lines_v, at % across, ends - first, plane[:, 1], right[:count])
+    np.multiply(right[: len(right) - count], z, out=right[count:])
+    left *= weight
+    for k, low, high in zip(at.tolist(), first.tolist(), ends.tolist(), strict=True):
+        flat[k] += left[:, low:high] @ right[:, low:high].T
+
+
+def _add_by_point(sums: Floats, lines_u: Floats, lines_v: Floats, *points: Floats) -> None:
+    """Do the same by compiled loops, which are quicker for very many points."""
+    from geofit.splines.sum_loops import add_points
+
+    plane, z, weight = (np.require(rows, np.float64, ("C", "W")) for rows in points)
+    cells = bspline.intervals(lines_u, plane[:, 0]), bspline.intervals(lines_v, plane[:, 1])
+    add_points(sums, lines_u, lines_v, *cells, plane, z, weight)
 
 
 def _merged(lines: Floats, cells: Floats, sums: Floats) -> Floats:

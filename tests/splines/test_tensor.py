@@ -8,8 +8,8 @@ from numpy.polynomial.legendre import leggauss
 from refusals import refused
 
 from geofit.data.errors import FitError
-from geofit.splines import bspline, tensor
-from geofit.splines.sums import Moments
+from geofit.splines import bspline, sums, tensor
+from geofit.splines.sums import COMPILED, Moments
 from geofit.splines.tensor import CELLWISE, Factor, TensorSpace, band_times
 
 
@@ -214,9 +214,10 @@ def test_band_times_equals_the_dense_product(shape):
 
 @pytest.mark.parametrize("degree", [1, 2, 3])
 @pytest.mark.parametrize("turned", [False, True])
-def test_moments_of_one_mesh_serve_all_spaces_on_its_lines(degree, turned):
+@pytest.mark.parametrize("n", [2_000, COMPILED])
+def test_moments_of_one_mesh_serve_all_spaces_on_its_lines(degree, turned, n):
     rng, lines_u, lines_v = np.random.default_rng(4), np.linspace(0, 10, 13), np.linspace(0, 6, 9)
-    plane, z, weight = rng.uniform(0, (10, 6), (2_000, 2)), rng.normal(size=2_000), rng.uniform(0.5, 2, 2_000)
+    plane, z, weight = rng.uniform(0, (10, 6), (n, 2)), rng.normal(size=n), rng.uniform(0.5, 2, n)
     moments = Moments.of(lines_u, lines_v, degree, plane, z, weight)
     for some_u, some_v in ((slice(None), slice(None)), ([0, 1, 5, 12], [0, 3, 4, 8]), ([0, 12], slice(None))):
         knots = (bspline.clamped_knots(lines[some], degree) for lines, some in ((lines_u, some_u), (lines_v, some_v)))
@@ -228,9 +229,24 @@ def test_moments_of_one_mesh_serve_all_spaces_on_its_lines(degree, turned):
             expected = space.equations_of(*space.rows(plane[:, ::-1]), z, weight)
         found = space.equations((moments.turned if turned else moments).on(space.knots_u, space.knots_v))
         for one, other in zip(found, expected, strict=True):
-            np.testing.assert_allclose(one, other, atol=1e-11)
+            np.testing.assert_allclose(one, other, atol=1e-10)
     assert not moments.serve(bspline.clamped_knots([0, 5.1, 10], degree), bspline.clamped_knots(lines_v, degree))
     assert not moments.serve(bspline.clamped_knots(lines_u[:-1], degree), bspline.clamped_knots(lines_v, degree))
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3])
+def test_compiled_sums_equal_plain_ones_also_of_places_beyond_the_mesh(degree, monkeypatch):
+    n, lines_u = 3 * COMPILED, np.array([0.0, 0.5, 3.0, 3.1, 10.0])
+    rng, lines_v = np.random.default_rng(5), np.array([-2.0, 0.0, 5.0])
+    plane = np.asfortranarray(rng.uniform((-0.5, -2.5), (10.5, 5.5), (n, 2)))
+    plane[:4] = [(0, -2), (10, 5), (3, 0), (3.1, 5)]
+    given = lines_u, lines_v, degree, plane, rng.normal(size=n), np.broadcast_to(4.0, n)
+    compiled = Moments.of(*given)
+    monkeypatch.setattr(sums, "COMPILED", n + 1)
+    plain = Moments.of(*given)
+    np.testing.assert_allclose(compiled.weights, plain.weights, atol=1e-8)
+    np.testing.assert_allclose(compiled.heights, plain.heights, atol=1e-8)
+    assert compiled.weights[..., 0, 0].sum() == pytest.approx(4 * n)
 
 
 def test_a_mesh_may_reach_beyond_a_space_where_no_points_lie():
