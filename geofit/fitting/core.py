@@ -21,7 +21,7 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
 from geofit.fitting.approximate import fixed_by_core
 from geofit.fitting.assemble import carried, multiply_knots
-from geofit.fitting.core_noise import near_noise
+from geofit.fitting.core_noise import SHARED, near_noise
 from geofit.fitting.core_patch import (
     FIELD_SPAN,
     LAID,
@@ -39,7 +39,7 @@ from geofit.fitting.field import FieldChoice, Smoothed
 from geofit.fitting.knots import graded_breaks, neighbour_pairs, some_breaks
 from geofit.fitting.net import Net, Periphery, cap_for, in_patches, smoothed
 from geofit.fitting.parametrize import Parametrization
-from geofit.fitting.resolution import Choice, choose_field, longest_span
+from geofit.fitting.resolution import CLOSE, Choice, choose_field, longest_span
 from geofit.fitting.skin import lofted, minimum_norm_correction, refine_knots, ruled, section_lines
 from geofit.fitting.split import Split
 from geofit.splines import bspline
@@ -67,8 +67,6 @@ RESOLVED = 0.03
 RESOLVED_DRAWN, DRAWN = 0.2, 0.9
 #: The same for noise within these shares of the interior tolerance: what is far below it bends no surface visibly.
 LITTLE = ((1.0, 0.05), (0.3, 0.2))
-#: Share of the noise by which the nearest points must differ at least: what they share more of is relief.
-SHARED = 0.5
 #: Spans between neighbours of one section, as a share of their distance, where knots run through the whole surface.
 ALONG = 1.8
 #: No finer functions act on a core whose knots run through the whole surface.
@@ -104,10 +102,11 @@ def fit_with_core(
     degree, most = degree_for(len(data.plane)), cap_for(settings, len(data.plane), A_POINT)
     stage("field", 0.25)
     field, coarse = choose_field(data, settings, most, sketched) if chosen is None else chosen
-    relief = relief_of_core(data, core, inside, field, settings, most)
     lines = section_lines(data.plane[inside], parametrization.section[kept][inside], 0.5 * (core[1] - core[0]))
     between = ~parametrization.parametrized[kept]
-    given = Core(data, core, inside, between, field, coarse, lines, parametrization.parametric, settings, relief)
+    given = Core(data, core, inside, between, field, coarse, lines, parametrization.parametric, settings, None)
+    relief = relief_of_core(data, core, inside, field, settings, most, lambda: _near_noise(given))
+    given = replace(given, relief=relief)
     if settings.core == "auto" and settings.smoothing == "auto" and not parametrization.parametric:
         _refuse_noise(given, drawn=float(np.mean(parametrization.section[kept][inside] != "")))
     stage("core", 0.4)
@@ -121,7 +120,10 @@ def fit_with_core(
                 "across='linear' needs at least two straight, named sections; the core is cubic across",
             ).with_severity("warning"),
         )
-    first = limits = Limits(most, min(LONGEST, max(longest_span(coarse), LONGEST_IN_GROUPS)))
+    longest = longest_span(coarse)
+    if longest > 0.9 * CLOSE:
+        longest = min(LONGEST, max(longest, LONGEST_IN_GROUPS))
+    first = limits = Limits(most, longest)
     # Curves that run through the whole surface, and a break at the core's edge, need knots that do so too.
     local = not (linear or parametrization.parametric or settings.seam == "position" or inside.all())
     while True:
@@ -273,21 +275,27 @@ def _refuse_noise(core: Core, drawn: float) -> None:
     ExactnessError
         If it is not.
     """
-    field, inside = core.field if core.relief is None else core.relief.field, np.flatnonzero(core.inside)
-    resolved = (RESOLVED_DRAWN if drawn >= DRAWN else RESOLVED) * field.spread
-    tolerance = core.settings.interior_tolerance
-    limit = max(resolved, *(min(share * tolerance, part * field.spread) for share, part in LITTLE))
+    field = core.field if core.relief is None else core.relief.field
+    spread, tolerance = max(field.spread, core.field.spread), core.settings.interior_tolerance
+    resolved = (RESOLVED_DRAWN if drawn >= DRAWN else RESOLVED) * spread
+    limit = max(resolved, *(min(share * tolerance, part * spread) for share, part in LITTLE))
     if field.noise <= limit:
         return
-    if near_noise(core.data.plane[inside], core.misfit(inside)) > max(limit, SHARED * field.noise):
+    if _near_noise(core) > max(limit, SHARED * field.noise):
         raise ExactnessError(
             message(
                 "fitting.points-support-to-noise",
                 "its points agree only to about {noise:.3g} m, while their height varies by about {spread:.3g} m",
                 noise=field.noise,
-                spread=field.spread,
+                spread=spread,
             )
         )
+
+
+def _near_noise(core: Core) -> float:
+    """Return the noise about its field that the nearest points of a core show, metres."""
+    inside = np.flatnonzero(core.inside)
+    return near_noise(core.data.plane[inside], core.misfit(inside))
 
 
 def _torn(core: Core) -> NDArray[np.bool_]:

@@ -6,12 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-__all__ = ["near_noise"]
+__all__ = ["SHARED", "near_noise"]
 
 Floats = NDArray[np.float64]
 
 #: One of so many points, but at least the second number, is looked at: those with the nearest neighbours.
 NEAREST, FEWEST = 3, 20
+#: Share of the noise by which the nearest points must differ at least: what they share more of is relief.
+SHARED = 0.5
 
 
 def near_noise(plane: Floats, misfit: Floats) -> float:

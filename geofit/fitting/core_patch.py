@@ -62,7 +62,7 @@ HUG, HUGGED = 1 / 8, 1
 NARROW = 0.2
 #: Room between a core's points and the edge of its patch, as a share of their spacing, and the spans that it holds:
 #: the finer functions vanish at the edge.
-ROOM, IN_ROOM = 0.5, 2.5
+ROOM, IN_ROOM = 1.0, 2.5
 #: Points of the periphery nearer to the core's than this share of its room lie in its patch.
 CLOSE = 0.5
 #: A point on which the finer functions act with less than this sum of squares is not reached by them.
@@ -235,7 +235,7 @@ def _laid(core: Core, plane: Floats, pairs: Ints, limits: Limits, share: float) 
         outer, inner = [], []
         for axis, size in ((0, sizes[0]), (1, sizes[1])):
             low, high = patch[2 * axis : 2 * axis + 2]
-            field = np.array([[low, high, FIELD_SPAN * given]])
+            field = np.array([[low, high, min(FIELD_SPAN, limits.longest) * given]])
             breaks = graded_breaks([area[2 * axis], low, high, area[2 * axis + 1]], wider * limits.longest, field)
             within = breaks[(breaks >= low) & (breaks <= high)]
             if axis == 0:

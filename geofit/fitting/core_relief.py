@@ -20,6 +20,7 @@ from geofit.data.long_arrays import everywhere
 from geofit.data.prepared import Preparing
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
+from geofit.fitting.core_noise import SHARED
 from geofit.fitting.field import FieldChoice, choose_covariance, plane_trend, smooth
 from geofit.fitting.likelihood import plane_coefficients
 from geofit.fitting.resolution import EVEN, LOUDER, SKETCH, choose_field, even_space, longest_span
@@ -103,7 +104,13 @@ class CoreRelief(Preparing):
 
 
 def relief_of_core(
-    data: Data, core: Rectangle, inside: NDArray[np.bool_], field: FieldChoice, settings: FitSettings, most: int
+    data: Data,
+    core: Rectangle,
+    inside: NDArray[np.bool_],
+    field: FieldChoice,
+    settings: FitSettings,
+    most: int,
+    near: Callable[[], float],
 ) -> CoreRelief | None:
     """Return the field of a core's own points; None where that of all points follows their relief.
 
@@ -121,6 +128,8 @@ def relief_of_core(
         Settings of the fit.
     most : int
         Control points at most.
+    near : callable
+        Returns the noise that the core's nearest points show (:func:`geofit.fitting.core_noise.near_noise`), metres.
 
     Notes
     -----
@@ -141,8 +150,10 @@ def relief_of_core(
     own, trend = _points_within(data, reach, inside, scale)
     space = even_space(own.area, EVEN, degree_for(len(own.plane)), SKETCH)
     try:
-        # A cheap look first: does the same field leave less noise on spans of the core's own spacing?
-        if choose_covariance(space, own.weighted, None, [_scaled(field, scale)], own.trend)[0][0].noise > quiet:
+        # A cheap look first: does the same field leave less noise on spans of the core's own spacing? Where all relief
+        # of the core counts as noise, no field of so long a range does, but the nearest points share it.
+        look = choose_covariance(space, own.weighted, None, [_scaled(field, scale)], own.trend)[0][0].noise
+        if look > quiet and (field.noise <= settings.interior_tolerance or near() > SHARED * field.noise):
             return None
         found, space = choose_field(own, settings, most)
     except FitError:

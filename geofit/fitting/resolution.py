@@ -16,13 +16,14 @@ from geofit.data.errors import FitError
 from geofit.data.long_arrays import inverse_squares
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
-from geofit.fitting.field import FieldChoice, choose_covariance, widened_space
+from geofit.fitting.density import CLOUD
+from geofit.fitting.field import FieldChoice, choose_covariance, smooth, widened_space
 from geofit.fitting.optimum import BEHIND
 from geofit.fitting.weighted_points import WeightedPoints
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
-__all__ = ["EVEN", "Choice", "choose_field", "even_space", "longest_span", "sketched_fields"]
+__all__ = ["CLOSE", "EVEN", "Choice", "choose_field", "even_space", "longest_span", "sketched_fields"]
 
 Rectangle = tuple[float, float, float, float]
 
@@ -38,6 +39,8 @@ GAIN = 10.0
 #: less: shorter spans are always a better approximation of its form, but are to lower the noise by a fiftieth, or, of
 #: very many points, to be worth their number (H. Akaike, IEEE Trans. Autom. Control 19, 1974, 716-723).
 OF_POINTS, OF_CONTROL_POINTS = 0.04, 2.0
+#: A field that leaves the data's range by more than this many times that range is tried on so much shorter spans.
+WILD, CALMER = 2.0, 0.75
 #: Control points of a coarser level, as a share of those of the last, and the least of any.
 COARSER, COARSEST = 0.75, 75
 #: How many times the noise of the level before a coarser one may find.
@@ -128,6 +131,8 @@ def choose_field(data: Data, settings: FitSettings, most: int, sketched: Sequenc
         and (LOUDER * one.field.noise < firsts[0].field.noise or one.value < firsts[0].value + GAIN)
     ]
     best = min((resolved(one) for one in (firsts[0], *rivals[:1])), key=lambda level: level.value)
+    if len(data.plane) <= CLOUD and _wild(best, data):
+        best = _shortened(best, _calmer(data.area, degree, limit, longest_span(best.space)), on, len(data.plane))
     space, field = best.space, best.field
     if data.slopes is not None and len(data.slopes):
         field = choose_covariance(space, points, given, [field], data.trend, data.slopes, field.noise)[0][0]
@@ -162,6 +167,14 @@ def _shortened(best: Level, finer: Iterable[TensorSpace], on: Search, n: int) ->
     return best
 
 
+def _wild(level: Level, data: Data) -> bool:
+    """Whether a field swings far beyond its data: spans longer than the relief between dense points make it do so."""
+    value = np.asarray(data.value[:])
+    low, high = float(value.min()), float(value.max())
+    found = smooth(level.space, level.field, data.weighted, data.trend).coefficients
+    return bool(np.maximum(found - high, low - found).max() > WILD * (high - low))
+
+
 def _tried(on: Search, space: TensorSpace, field: FieldChoice, needed: float) -> Level | None:
     """Return the field on another space; None where rounding leaves its system without a solution there."""
     try:
@@ -177,6 +190,14 @@ def _finer(area: Rectangle, degree: int, limit: int, closest: float) -> Iterator
         count *= 2
         yield even_space(area, EVEN, degree, count)
     yield last
+
+
+def _calmer(area: Rectangle, degree: int, limit: int, span: float) -> Iterator[TensorSpace]:
+    """Yield spaces of ever shorter spans than those of the sparse points, as far as the control points go."""
+    size = 0
+    while (space := even_space(area, span := CALMER * span, degree, limit)).size > size:
+        size = space.size
+        yield space
 
 
 def _coarser(area: Rectangle, degree: int, size: int) -> Iterator[TensorSpace]:

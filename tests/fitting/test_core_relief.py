@@ -119,3 +119,39 @@ def test_a_surface_that_takes_it_follows_it():
     surface = field.blended(space, np.zeros(space.size))
     plane = rng.uniform(-2, 8, (2000, 2))
     np.testing.assert_allclose(space.matrix(plane) @ surface, field.instead(plane, np.zeros(len(plane))), atol=2e-3)
+
+
+def waves_seen_in_the_core_alone(seed, length):
+    """Return nine sections of 45 points over waves that 20 holes around, some 350 m apart, cannot show; the truth."""
+    rng = np.random.default_rng(seed)
+    lines = [np.column_stack([np.full(45, x), rng.uniform(900, 1400, 45)]) for x in np.linspace(600, 1100, 9)]
+    at = np.concatenate([*lines, rng.uniform((0, 0), (1600, 2200), (20, 2))])
+
+    def height(x, y):
+        return 1400 + 0.02 * x + 10 * np.sin(2 * np.pi * (x + 0.4 * y) / length)
+
+    z = height(*at.T) + rng.normal(0, 0.2, len(at))
+    return geofit.PointSet(np.column_stack([np.array([500_000.0, 3_100_000.0]) + at, z])), height
+
+
+@pytest.mark.parametrize("seed", [1, 2, 5])
+def test_a_field_that_swings_far_beyond_its_data_gets_shorter_spans(seed):
+    # Before it did, the surface left the 26 m of the data by 150 m (seed 5) to 850 m (seed 2).
+    points, _ = waves_seen_in_the_core_alone(seed, length=220)
+    surface = geofit.fit_horizon(points)
+    low, high = points.xyz[:, 2].min(), points.xyz[:, 2].max()
+    x, y = np.meshgrid(np.linspace(0, 1600, 60), np.linspace(0, 2200, 60))
+    z = surface.elevation(500_000 + x.ravel(), 3_100_000 + y.ravel())
+    assert np.nanmax(z) < high + 0.5 * (high - low)
+    assert np.nanmin(z) > low - 0.5 * (high - low)
+    assert surface.diagnostics["noise"] == pytest.approx(0.2, rel=0.3)
+
+
+@pytest.mark.parametrize("seed", [1, 5])
+def test_a_core_keeps_relief_that_the_field_of_all_points_takes_for_noise(seed):
+    points, height = waves_seen_in_the_core_alone(seed, length=160)
+    surface = geofit.fit_horizon(points)
+    assert surface.diagnostics["noise"] > 5, "that field takes the waves of 10 m for noise"
+    x, y = np.meshgrid(np.linspace(620, 1080, 40), np.linspace(950, 1350, 40))
+    off = surface.elevation(500_000 + x.ravel(), 3_100_000 + y.ravel()) - height(x.ravel(), y.ravel())
+    assert np.sqrt(np.mean(off**2)) < 0.5
