@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import geofit.io
-from geofit import FitSettings, PointSet, fit_horizon, read_surface
+from geofit import FitSettings, PointSet, fit_horizon
 from geofit.bodies.fit import fit_body
 from geofit.cad.solid_mesh import read_solids
 from geofit.cad.step import read_shapes, write_step
@@ -67,8 +67,9 @@ def test_a_file_with_its_own_zero_reads_back_to_the_map(surfaces, tmp_path, orig
         assert stated == (list(OFFSET_KEYS) if any(offset) else [])
     head = path.read_text("ascii").split("ENDSEC;")[0]
     assert ("Map coordinates = coordinates in this file" in head.replace("\n", "")) is any(offset)
+    read = geofit.io.read_surfaces(path)
     for name, one in surfaces.items():
-        again = read_surface(path, name)
+        again = read[name]
         assert np.abs(again.distance(one.points.xyz) - one.accuracy.residuals).max() < 1e-6
         at = one.points.xyz[:, :2]
         assert np.nanmax(np.abs(again.elevation(*at.T) - one.elevation(*at.T))) < 1e-6
