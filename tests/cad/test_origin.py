@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import geofit.io
-from geofit import FitSettings, PointSet, fit_horizon
+from geofit import FitSettings, PointSet, fit_horizon, read_surface
 from geofit.bodies.fit import fit_body
 from geofit.cad.solid_mesh import read_solids
 from geofit.cad.step import read_shapes, write_step
@@ -46,6 +46,7 @@ def in_file(path):
     return [points[places[after]] - points[places[before]] for before, after in moves]
 
 
+@pytest.mark.usefixtures("read_here")
 @pytest.mark.parametrize(
     ("origin", "offset"),
     [("map", (0, 0, 0)), ("local", (534_500.0, 3_123_100.0, 0.0)), (DATUM, DATUM), (np.array(DATUM), DATUM)],
@@ -67,9 +68,8 @@ def test_a_file_with_its_own_zero_reads_back_to_the_map(surfaces, tmp_path, orig
         assert stated == (list(OFFSET_KEYS) if any(offset) else [])
     head = path.read_text("ascii").split("ENDSEC;")[0]
     assert ("Map coordinates = coordinates in this file" in head.replace("\n", "")) is any(offset)
-    read = geofit.io.read_surfaces(path)
     for name, one in surfaces.items():
-        again = read[name]
+        again = read_surface(path, name)
         assert np.abs(again.distance(one.points.xyz) - one.accuracy.residuals).max() < 1e-6
         at = one.points.xyz[:, :2]
         assert np.nanmax(np.abs(again.elevation(*at.T) - one.elevation(*at.T))) < 1e-6
@@ -141,7 +141,7 @@ def test_the_certificate_states_the_offset(surfaces, tmp_path):
 @pytest.fixture(scope="module")
 def body():
     tables = [BODIES / f"{table}.csv" for table in ("collar", "survey", "lithology")]
-    return fit_body(read_boreholes(*tables[:2], tables[2:], dip="down-positive"), codes="GABBRO", name="岩体 'G'")
+    return fit_body(read_boreholes(*tables[:2], tables[2:], dip="down-positive"), codes="VOID", name="空区 'V'")
 
 
 @pytest.mark.parametrize("nurbs", [True, False])
@@ -154,7 +154,7 @@ def test_a_body_has_name_colour_attributes_and_origin(body, tmp_path, nurbs):
     assert checks["place"].value < 1e-6
     assert checks["read-back attributes"].passed
     (shape,) = read_shapes(path)
-    assert shape.name == "岩体 'G'"
+    assert shape.name == body.name
     accuracy = body.accuracy
     assert float(shape.attributes["sigma_m"]) == pytest.approx(accuracy.sigma, rel=1e-5)
     assert float(shape.attributes["epsilon_m"]) == accuracy.epsilon
@@ -165,7 +165,7 @@ def test_a_body_has_name_colour_attributes_and_origin(body, tmp_path, nurbs):
     assert [float(c) for c in re.findall(r"COLOUR_RGB\('',([^)]*)\)", text)[0].split(",")] == pytest.approx(
         [0x5A / 255, 0x91 / 255, 0xCF / 255], abs=1e-4
     )
-    vertices = read_solids(path)["岩体 'G'"].vertices
+    vertices = read_solids(path)[body.name].vertices
     mesh = body.triangulate().vertices
     assert np.abs(vertices.min(axis=0) - mesh.min(axis=0)).max() < 1.0
     assert np.abs(vertices.max(axis=0) - mesh.max(axis=0)).max() < 1.0
