@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import tempfile
 from pathlib import Path
@@ -30,3 +31,16 @@ def sample_surfaces(sample_site):
         name: geofit.fit_horizon(points, site.settings.get(name), site.boundary, name=name)
         for name, points in site.horizons.items()
     }
+
+
+@pytest.fixture
+def read_here(monkeypatch):
+    """CAD files that a test itself has written are read in this process: cad/test_foreign.py shows a child as good."""
+    from geofit.cad.foreign import READERS
+
+    def read(path, reader):
+        module, function = READERS[reader]
+        return getattr(importlib.import_module(module), function)(path)
+
+    for module in ("step", "iges_brep"):
+        monkeypatch.setattr(f"geofit.cad.{module}.read_in_child", read)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -43,9 +45,16 @@ def left_out(name: str, count: int) -> tuple[float, float]:
 
 def planes_across(truth: Truth, axis: int, count: int) -> Floats:
     """Return the places (count,) of planes across a body, as far apart from each other."""
+    low, high = extent_along(truth, axis)
+    return np.asarray(low + (np.arange(count) + 0.5) / count * (high - low))
+
+
+@cache
+def extent_along(truth: Truth, axis: int) -> tuple[float, float]:
+    """Return where a body begins and ends along an axis, to a node of a raster."""
     nodes = np.stack(np.meshgrid(LINE[::2], LINE[::2], LINE[::2], indexing="ij"), axis=-1).reshape(-1, 3)
     along = nodes[truth(nodes) < 0, axis]
-    return np.asarray(along.min() + (np.arange(count) + 0.5) / count * np.ptp(along))
+    return float(along.min()), float(along.max())
 
 
 def sectioned_case(seed: int) -> tuple[str, Truth, list[Outline]]:
@@ -102,6 +111,7 @@ def plane_of(truth: Truth, axis: int, at: float) -> tuple[Floats, Bools]:
     return places, (truth(places) < 0).reshape(len(LINE), len(LINE))
 
 
+@cache
 def _outlines(truth: Truth, axis: int, at: float, name: str) -> list[Outline]:
     import contourpy
 

@@ -26,10 +26,11 @@ class Shape:
     extent: tuple[NDArray[np.float64], NDArray[np.float64]]
     epsilon: float = 0.02
     cut_sides: tuple[str, ...] = ()
+    cells: int = 64
 
     @cached_property
     def overview(self) -> TriangleMesh:
-        return implicit.isosurface(self.field, implicit.Lattice.around(*self.extent, cells=64))
+        return implicit.isosurface(self.field, implicit.Lattice.around(*self.extent, cells=self.cells))
 
 
 def test_each_stage_that_fails_has_a_reason_of_its_own() -> None:
@@ -83,7 +84,7 @@ def test_a_body_of_many_parts_has_patches_for_each() -> None:
             near = np.arange(len(xyz)), far.argmin(axis=1)
             return np.asarray(off[near] / np.maximum(far[near], 1e-300)[:, None])
 
-    patched = patched_surface(Shape(Balls(), Balls.bounds))
+    patched = patched_surface(Shape(Balls(), Balls.bounds, cells=40))
     assert len(patched.components) == 22
     assert len(patched.patches) <= 22 * 50
     assert patched.deviation <= 0.01

@@ -46,6 +46,7 @@ def in_file(path):
     return [points[places[after]] - points[places[before]] for before, after in moves]
 
 
+@pytest.mark.usefixtures("read_here")
 @pytest.mark.parametrize(
     ("origin", "offset"),
     [("map", (0, 0, 0)), ("local", (534_500.0, 3_123_100.0, 0.0)), (DATUM, DATUM), (np.array(DATUM), DATUM)],
@@ -140,7 +141,7 @@ def test_the_certificate_states_the_offset(surfaces, tmp_path):
 @pytest.fixture(scope="module")
 def body():
     tables = [BODIES / f"{table}.csv" for table in ("collar", "survey", "lithology")]
-    return fit_body(read_boreholes(*tables[:2], tables[2:], dip="down-positive"), codes="GABBRO", name="岩体 'G'")
+    return fit_body(read_boreholes(*tables[:2], tables[2:], dip="down-positive"), codes="VOID", name="空区 'V'")
 
 
 @pytest.mark.parametrize("nurbs", [True, False])
@@ -153,7 +154,7 @@ def test_a_body_has_name_colour_attributes_and_origin(body, tmp_path, nurbs):
     assert checks["place"].value < 1e-6
     assert checks["read-back attributes"].passed
     (shape,) = read_shapes(path)
-    assert shape.name == "岩体 'G'"
+    assert shape.name == body.name
     accuracy = body.accuracy
     assert float(shape.attributes["sigma_m"]) == pytest.approx(accuracy.sigma, rel=1e-5)
     assert float(shape.attributes["epsilon_m"]) == accuracy.epsilon
@@ -164,7 +165,7 @@ def test_a_body_has_name_colour_attributes_and_origin(body, tmp_path, nurbs):
     assert [float(c) for c in re.findall(r"COLOUR_RGB\('',([^)]*)\)", text)[0].split(",")] == pytest.approx(
         [0x5A / 255, 0x91 / 255, 0xCF / 255], abs=1e-4
     )
-    vertices = read_solids(path)["岩体 'G'"].vertices
+    vertices = read_solids(path)[body.name].vertices
     mesh = body.triangulate().vertices
     assert np.abs(vertices.min(axis=0) - mesh.min(axis=0)).max() < 1.0
     assert np.abs(vertices.max(axis=0) - mesh.max(axis=0)).max() < 1.0

@@ -11,7 +11,7 @@ from surfaces import ORIGIN, fold, height_field, horizon, nine, split
 import geofit
 from geofit.cad.faces import edges_with_faces, to_geom
 from geofit.cad.read_back import read_back, self_intersects
-from geofit.cad.step import read_shapes, read_step, write_step
+from geofit.cad.step import read_shapes, read_step, step_surfaces, write_step
 from geofit.cad.step_text import canonical
 from geofit.data.errors import InputError, StitchError
 from geofit.data.points import PointSet
@@ -75,6 +75,7 @@ def test_read_gives_back_knots_control_points_names_and_origin(written):
         np.testing.assert_allclose(theirs.control, ours.control, atol=1e-9)
 
 
+@pytest.mark.usefixtures("read_here")
 def test_a_file_in_millimetres_says_so_and_holds_the_same_surface(written, tmp_path):
     surface, path, found, _ = written
     back = write_step({"T1 顶板": surface}, tmp_path / "mm.step", unit="mm")["T1 顶板"]
@@ -129,6 +130,7 @@ def test_the_colour_is_read_by_opencascade(written):
     assert any(tool.GetColor_s(label, XCAFDoc_ColorSurf, colour) for label in shapes)
 
 
+@pytest.mark.usefixtures("read_here")
 def test_several_horizons_in_one_assembly(tmp_path):
     whole, parts = nine()
     points, core, _ = sampled(whole, 30)
@@ -144,6 +146,7 @@ def test_several_horizons_in_one_assembly(tmp_path):
     assert [p.name for p in back["lower"].patches] == ["only"]
 
 
+@pytest.mark.usefixtures("read_here")
 def test_trimmed_horizon(tmp_path):
     whole, parts = nine()
     points, core, d = sampled(whole)
@@ -256,6 +259,7 @@ def test_two_patches_that_pierce_each_other_are_found():
     assert self_intersects(shape)
 
 
+@pytest.mark.usefixtures("read_here")
 @pytest.mark.parametrize("unit", ["MM", "M"])
 def test_foreign_files_in_any_unit_with_planes_cylinders_and_trimmed_faces(tmp_path, unit):
     import cadquery
@@ -376,11 +380,9 @@ def test_the_witness_hides_no_point_that_is_missed(tmp_path):
 @pytest.mark.parametrize("name", ["强风化下限" * 20, "强a'𠀀" * 30, "a'" * 60, "ab cd" * 60])
 def test_a_name_across_lines_is_whole(name, tmp_path):
     """OpenCASCADE breaks a string after 72 bytes, in the middle of a character or of a doubled quotation mark."""
-    from geofit.io.surface_files import read_surfaces
-
     surface = geofit.fit_horizon(geofit.PointSet([[0, 0, 1.0], [9, 0, 2.0], [0, 9, 3.0], [9, 9, 4.0]]), name="a")
     write_step({name: surface}, tmp_path / "a.step")
-    assert list(read_surfaces(tmp_path / "a.step")) == [name]
+    assert list(step_surfaces(tmp_path / "a.step")) == [name]
 
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="names of 255 bytes")

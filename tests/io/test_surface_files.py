@@ -65,6 +65,7 @@ def test_what_was_written_is_measured(file, names, within, files, surfaces):
         assert np.abs(np.abs(known.distance(xyz)) - np.abs(moved)).max() < 1e-6
 
 
+@pytest.mark.usefixtures("read_here")
 @pytest.mark.parametrize("file", ["a.igs", "a.brep", "a.ts"])
 def test_the_surface_ends_at_its_outline(file, files, surfaces):
     one = next(iter(read_surfaces(files / file).values()))
@@ -84,6 +85,7 @@ def test_the_surface_ends_at_its_outline(file, files, surfaces):
     assert sum("p.csv" in str(note) for note in judged.accuracy.notes) == 3
 
 
+@pytest.mark.usefixtures("read_here")
 def test_sigma_of_a_given_surface_is_eq_3(files, surfaces):
     one = read_surfaces(files / "a.igs")[LONG]
     xyz, moved = points_near(surfaces[LONG], 50)
@@ -97,6 +99,7 @@ def test_sigma_of_a_given_surface_is_eq_3(files, surfaces):
     assert accuracy.over["interior_tolerance"].count == (np.abs(moved) > 0.1).sum()
 
 
+@pytest.mark.usefixtures("read_here")
 def test_loose_faces_are_one_surface_and_units_are_converted(tmp_path):
     import cadquery as cq
 
@@ -194,6 +197,7 @@ def run(monkeypatch, capsys, *arguments):
     return int(stop.value.code or 0), captured.out, captured.err
 
 
+@pytest.mark.usefixtures("read_here")
 def test_the_commands_take_every_format(files, surfaces, tmp_path, monkeypatch, capsys):
     xyz, moved = points_near(surfaces[LONG], 40)
     with (tmp_path / "p.csv").open("w", newline="") as stream:
@@ -216,6 +220,7 @@ def test_the_commands_take_every_format(files, surfaces, tmp_path, monkeypatch, 
     assert LONG in out
 
 
+@pytest.mark.usefixtures("read_here")
 def test_a_foreign_step_is_a_trimmed_surface(tmp_path):
     import cadquery as cq
 
@@ -243,20 +248,26 @@ def test_five_thousand_triangles_are_measured_exactly():
     assert np.abs(one.distance(places + ORIGIN)).max() < 1e-8
 
 
-@pytest.mark.parametrize("source", ["step", "igs", "brep"])
+@pytest.fixture(scope="module", params=["step", "igs", "brep"])
+def foreign_surface(request, tmp_path_factory):
+    """A surface as it is read from a file of a CAD format."""
+    path = tmp_path_factory.mktemp("foreign") / f"a.{request.param}"
+    write_surface(horizon([nine()[0]]), path)
+    return read_surface(path)
+
+
+@pytest.mark.usefixtures("read_here")
 @pytest.mark.parametrize("target", ["step", "igs", "brep", "ifc", "stl"])
-def test_a_surface_that_was_read_is_written_again(source, target, tmp_path):
+def test_a_surface_that_was_read_is_written_again(foreign_surface, target, tmp_path):
     """A file of one CAD format becomes one of another: no points and no settings are needed for that."""
-    whole, _ = nine()
-    first, second = tmp_path / f"a.{source}", tmp_path / f"b.{target}"
-    write_surface(horizon([whole]), first)
-    found = read_surface(first)
-    write_surface(found, second)
+    whole, second = nine()[0], tmp_path / f"b.{target}"
+    write_surface(foreign_surface, second)
     if target in ("step", "igs", "brep"):
         x, y = (ORIGIN[:2] + np.random.default_rng(3).uniform((20, 20), (980, 680), (50, 2))).T
         assert_allclose(read_surface(second).elevation(x, y), horizon([whole]).surface.elevation(x, y), atol=1e-6)
 
 
+@pytest.mark.usefixtures("read_here")
 def test_the_read_back_of_an_unfitted_surface_has_no_points(tmp_path):
     write_surface(horizon(nine()[1]), tmp_path / "a.igs")
     found = read_surface(tmp_path / "a.igs")

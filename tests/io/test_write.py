@@ -45,6 +45,7 @@ def test_one_surface_or_several_in_every_format(name, upper, lower, tmp_path):
     assert all(file.is_file() for file in both)
 
 
+@pytest.mark.usefixtures("read_here")
 def test_the_unit_is_that_of_the_file_not_of_the_surface(upper, tmp_path):
     sizes = {}
     for unit in ("m", "mm"):
@@ -58,6 +59,7 @@ def test_the_unit_is_that_of_the_file_not_of_the_surface(upper, tmp_path):
         geofit.write_surface(upper, tmp_path / "a.obj", unit="mm")
 
 
+@pytest.mark.usefixtures("read_here")
 def test_a_surface_is_found_by_its_name(upper, lower, tmp_path):
     geofit.write_surface({"up": upper, "low": lower}, tmp_path / "two.step")
     assert geofit.read_surface(tmp_path / "two.step", "low").name == "low"

@@ -122,6 +122,7 @@ def test_unknown_format_and_no_surface(both, tmp_path):
         write_surface({}, tmp_path / "a.obj", format="obj")
 
 
+@pytest.mark.usefixtures("read_here")
 def test_surfaces_of_several_files_keep_apart(both, tmp_path):
     write_step({"T1": both["T2/T1"]}, tmp_path / "old.step")
     write_step({"T1": both["强风化"]}, tmp_path / "new.step")

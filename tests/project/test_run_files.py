@@ -41,6 +41,7 @@ def test_a_run_of_some_horizons_has_the_names_of_a_run_of_all(tmp_path):
     assert blocks.horizons == ("A", "A_upper90", "A (west)")
 
 
+@pytest.mark.usefixtures("read_here")
 def test_horizons_called_like_other_files_keep_all_of_theirs(tmp_path):
     site = Site("s", {"A": points(1), "A_upper90": points(2), "report": points(3), "site": points(4)})
     done = run_horizons(site, tmp_path, bands=True, date="2024-01-01")
