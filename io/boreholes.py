@@ -22,7 +22,7 @@ from geofit.io.columns import COLLAR, COLLAR_ON_GROUND, INTERVALS, plain_name
 from geofit.io.desurvey import Desurvey, WellPath, desurvey
 from geofit.io.journal import Journal
 from geofit.io.lower_limits import tops_from_above
-from geofit.io.rows import Rows, read_rows
+from geofit.io.rows import Rows, name_key, read_rows
 from geofit.io.source import Source, as_source
 from geofit.io.surveys import Collar, Stations, read_stations
 from geofit.io.units import METRES
@@ -197,6 +197,7 @@ def _read_collars(
     check_axes(rows, x, y, region)
     check_heights(rows, x, y, z, ground)
     first: dict[str, int] = {}
+    alike: dict[tuple[str, ...], int] = {}
     places: dict[tuple[float, float, float], int] = {}
     for i in np.flatnonzero(rows.ok).tolist():
         if name[i] in first:
@@ -220,6 +221,15 @@ def _read_collars(
             )
             continue
         first[name[i]] = i
+        k = alike.setdefault(name_key(name[i]), i)
+        if k != i:
+            reason = message(
+                "io.hole-named-alike",
+                "The name differs from hole {hole} (row {row}) only in case, leading zeros, blanks or hyphens",
+                hole=Untranslated(name[k]),
+                row=rows.line[k],
+            )
+            rows.warn(i, "hole", reason, message("io.remove-or-rename-hole", "If they are one hole, remove one."))
         k = places.setdefault((x[i], y[i], z[i]), i)
         if k != i:
             reason = message(
@@ -395,10 +405,10 @@ def _read_log(
         top = tops_from_above(rows, name.tolist(), base, collars)
     for mask, role, reason, remedy in (
         (
-            top < 0,
+            (top < 0) | (base < 0),
             "from",
-            message("io.interval-starts-above-collar", "The interval starts above the collar"),
-            message("io.depths-count-down", "Depths count from the collar, downwards."),
+            message("io.interval-starts-above-collar", "The interval lies above the collar"),
+            message("io.depths-positive-down", "Depths are positive and count from the collar, downwards."),
         ),
         (
             base < top,

@@ -59,11 +59,12 @@ class ImportPlan:
         self.counts.append(TableCount(name, read, 0, read))
 
     def drop(self, error: InputError) -> bool:
-        """Set the part that an error names aside; False if it names none."""
+        """Set the part that an error names aside, and list why its rows cannot be used; False if it names none."""
         for parts in self.parts.values():
             for part in parts:
                 if error.file is not None and error.file == part.source.name:
                     parts.remove(part)
+                    self.issues += [one for one in error.issues if one.file == error.file and one.severity == "error"]
                     self.set_aside(
                         part.source.name,
                         part.preview.read,

@@ -176,15 +176,15 @@ class Rows:
         if lookup.issuperset(names):
             return list(names)
         # The hole of a row that was refused is not another one.
-        meant = _meant(set(names) - lookup - self.journal.refused.keys(), lookup)
+        refused = {name_key(name): place for name, place in self.journal.refused.items()}
+        meant = _meant({name for name in set(names) - lookup if name_key(name) not in refused}, lookup)
         self._list_meant(role, where, meant)
         names = [meant.get(name, name) for name in names]
         for i in np.flatnonzero(self.ok).tolist():
             name = names[i]
             if name in lookup:
                 continue
-            if name in self.journal.refused:
-                place = self.journal.refused[name]
+            if name not in hints and (place := refused.get(name_key(name))):
                 hints[name] = message(
                     "io.referred-row-not-used", "Its own row was not used ({place}): correct that first.", place=place
                 )
@@ -297,25 +297,26 @@ def read_rows(source: Source | str | Path, schema: Schema, journal: Journal) -> 
 def name_key(name: str) -> tuple[str, ...]:
     """Return what is the same for names that differ only in case, leading zeros, blanks, hyphens and underscores.
 
-    Marks between two numbers separate them all the same.
+    Marks between two numbers separate them all the same. A program may have written the name 7 as the number 7.0.
 
     Examples
     --------
-    >>> [name_key(name) for name in ("ZK-007", "zk 7", "7", "BH1-1", "BH11", "BH7*")]
+    >>> [name_key(name) for name in ("ZK-007", "zk 7", "7.0", "BH1-1", "BH11", "BH7*")]
     [('zk', '7'), ('zk', '7'), ('7',), ('bh', '1', '1'), ('bh', '11'), ('bh', '7', '*')]
     """
-    parts: list[str] = re.findall(r"[^\W\d_]+|\d+|[^\w\s-]", name.casefold())
+    whole = re.sub(r"^(\d+)\.0+$", r"\1", name.casefold())
+    parts: list[str] = re.findall(r"[^\W\d_]+|\d+|[^\w\s-]", whole)
     return tuple((part.lstrip("0") or "0") if part.isdecimal() else part for part in parts)
 
 
-def _meant(names: Iterable[str], known: Iterable[str]) -> dict[str, str]:
+def _meant(names: set[str], known: Iterable[str]) -> dict[str, str]:
     """Return the one known name that each name is likely to mean: but for its case, or else for its marks."""
     meant: dict[str, str] = {}
     for key in (str.casefold, name_key):
         alike: dict[object, list[str]] = {}
         for name in known:
             alike.setdefault(key(name), []).append(name)
-        for name in set(names) - meant.keys():
+        for name in names - meant.keys():
             if len(found := alike.get(key(name), [])) == 1:
                 meant[name] = found[0]
     return meant

@@ -130,7 +130,7 @@ def read_stations(
     ``declination`` (degrees, east positive) is added to the azimuths, which are grid azimuths without one.
 
     The attitude of the collar table is the station at 0 where the survey has none. Without one, a hole goes straight to
-    its first station, and a hole with one station is straight: each is listed as a warning.
+    its first station, and a hole with one station is straight: each is listed as a warning, vertical ones in one note.
     """
     rows = read_rows(source, SURVEY, journal)
     name, depth = rows.text("hole"), rows.numbers("depth")
@@ -140,7 +140,7 @@ def read_stations(
             i,
             "depth",
             message("io.station-above-collar", "The station lies above the collar"),
-            message("io.depths-count-down", "Depths count from the collar, downwards."),
+            message("io.depths-positive-down", "Depths are positive and count from the collar, downwards."),
         )
     stations = Stations.from_rows(rows, name, depth, sign, declination=declination)
     if not declination and any(np.abs(station.dip).min() < VERTICAL for station in stations.values()):
@@ -160,6 +160,7 @@ def read_stations(
     for i in np.flatnonzero(rows.ok).tolist():
         if name[i] not in first or depth[i] < depth[first[name[i]]]:
             first[name[i]] = i
+    upright: list[str] = []
     for hole, i in first.items():
         if stations[hole].depth[0] > 0:
             rows.warn(
@@ -172,13 +173,27 @@ def read_stations(
                 ),
                 message("io.add-attitude-collar", "Add the attitude at the collar."),
             )
-        if len(stations[hole].depth) == 1:
+        if len(stations[hole].depth) == 1 and stations[hole].dip[0] > VERTICAL:
+            upright.append(hole)
+        elif len(stations[hole].depth) == 1:
             rows.warn(
                 i,
                 "depth",
                 message("io.hole-of-one-station", "Hole {hole} has one station only; it is straight", hole=hole),
                 message("io.add-known-stations", "Add its other stations, if there are any."),
             )
+    if upright:
+        journal.add(
+            "note",
+            rows.file,
+            message(
+                "io.holes-of-one-vertical-station",
+                "Holes with one station only, which is vertical: {count}: {names}",
+                count=len(upright),
+                names=", ".join(upright),
+            ),
+            message("io.add-known-stations", "Add its other stations, if there are any."),
+        )
     for hole, mouth in collars.items():
         if hole not in stations and mouth.stations is None:
             journal.add(

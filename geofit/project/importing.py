@@ -346,7 +346,9 @@ def _read(tables: Tables, plan: ImportPlan, site_file: Path) -> Site:
             top.setdefault(head.strip("[]"), []).append(table)
         else:
             top[head.strip("[]")] = table
-    return build_site(top, site_file, Journal(), mappings=[part.mapping for part in _parts(plan)])
+    journal = Journal()
+    with journal.handed_over():
+        return build_site(top, site_file, journal, mappings=[part.mapping for part in _parts(plan)])
 
 
 def _write(tables: Tables, plan: ImportPlan, site_file: Path, mapping_file: Path) -> None:

@@ -193,13 +193,21 @@ def test_holes_without_any_survey_are_noted(read, campaign):
     assert note.reason.params["count"] == len(campaign.z)
 
 
+def test_vertical_holes_of_one_station_are_one_note(read, campaign):
+    rows = [(name, 0, 0, 70 if name == "ZK003" else 90) for name in campaign.names]
+    found = read(survey=table(SURVEY, rows))
+    assert [issue.row for issue in of(found, "io.hole-of-one-station")] == [5]
+    (note,) = of(found, "io.holes-of-one-vertical-station")
+    assert note.reason.params["count"] == len(campaign.z) - 1
+
+
 # Names
 
 
-@pytest.mark.parametrize("written", ["{0}", "ZK{0}", "zk-{0:03d}", "ZK_{0:03d}", "ZK {0}"])
+@pytest.mark.parametrize("written", ["{0}", "{0}.0", "ZK{0}", "zk-{0:03d}", "ZK_{0:03d}", "ZK {0}"])
 def test_zeros_blanks_and_hyphens_of_names_do_not_matter(read, campaign, written):
     collars = campaign.collars()
-    if written == "{0}":  # a spreadsheet took 007 for 7
+    if written.startswith("{0}"):  # a spreadsheet took 007 for 7, another program that for 7.0
         collars = [(name[2:], *rest) for name, *rest in collars]
     log = [(written.format(int(name[2:])), *rest) for name, *rest in campaign.log()]
     found = read(table(COLLAR, collars), log=table(LOG, log))
@@ -215,6 +223,21 @@ def test_numbers_in_names_stay_apart(read, write):
         [write("hole,from,to,code\nBH1-1,0,2,A\nBH-2,0,2,A\nBH11,0,2,A\n", "log.csv")],
     )
     assert [issue.row for issue in of(found, "io.name-unknown")] == [2, 3]
+
+
+def test_the_log_of_a_refused_collar_refers_to_its_row(read, campaign):
+    collars = [(*row[:3], "", row[4]) if i == 4 else row for i, row in enumerate(campaign.collars())]
+    log = [(name.replace("ZK", "ZK-"), *rest) for name, *rest in campaign.log()]
+    unknown = of(read(table(COLLAR, collars), log=table(LOG, log)), "io.name-unknown")
+    assert [issue.remedy.code for issue in unknown] == ["io.referred-row-not-used"] * 2
+
+
+@pytest.mark.parametrize("again", ["zk004", "ZK-004", "ZK4"])
+def test_two_collars_of_one_name_are_warned_of(read, campaign, again):
+    _, x, *rest = campaign.collars()[4]
+    found = read(table(COLLAR, [*campaign.collars(), (again, x + 30, *rest)]))
+    (alike,) = of(found, "io.hole-named-alike")
+    assert (alike.row, alike.reason.params["row"]) == (42, 6)
 
 
 # Numbers
@@ -267,6 +290,11 @@ def test_depths_that_run_upwards_are_not_elevations(read, campaign):
         for i, row in enumerate(campaign.log())
     ]
     assert of(read(log=table(LOG, rows)), "io.limits-taken-elevations")
+
+
+def test_negative_depths_are_named(read, campaign):
+    found = read(log=table(LOG, [(name, -top, -base, code) for name, top, base, code in campaign.log()]))
+    assert codes(found) == {"io.interval-starts-above-collar"}
 
 
 @pytest.mark.parametrize("unit", [0.3048, 1 / 0.3048])
@@ -349,6 +377,14 @@ def test_numbers_with_another_mark_are_named_as_the_reason(campaign, write, tmp_
     rows = [(name, *(f"{part}".replace(".", "'") for part in rest)) for name, *rest in campaign.collars()]
     found = import_files([write(table(COLLAR, rows), "collar.csv")], tmp_path / "site.toml")
     assert of(found, "io.file-without-numbers")
+
+
+def test_rows_of_a_table_that_is_set_aside_are_listed(campaign, write, tmp_path):
+    rows = [(*place, 80, 90, -5) for place in campaign.xy]
+    files = [write(table(COLLAR, campaign.collars()), "c.csv"), write(table(LOG, campaign.log()), "l.csv")]
+    dips = write(table(("x", "y", "z", "azimuth", "dip"), rows), "dips.csv")
+    found = import_files([*files, dips], tmp_path / "site.toml")
+    assert [issue.row for issue in of(found, "io.dip-out-of-range")] == list(range(2, len(rows) + 2))
 
 
 def test_spellings_of_one_code_are_one_bed(campaign, write, tmp_path):
