@@ -21,8 +21,8 @@ Floats = NDArray[np.float64]
 _BINS = 19
 #: Places that are counted together; of more than that, those that are evenly spread are not looked at one by one.
 _CHUNK = _MANY = 1 << 16
-#: Rows are strays beyond this many extents of the others, the outermost of all beyond the second number, if they are no
-#: more than this share of all.
+#: Rows are strays beyond this many extents of the others, if they are no more than this share of all; the outermost of
+#: all also beyond the second number, if one of their coordinates alone is off.
 STRAY, OUTERMOST, STRAYS = 3.0, 1.0, 0.05
 #: More rows than strays, beyond this many extents of the others, are in another coordinate system.
 OTHER_SYSTEM = 20.0
@@ -77,7 +77,7 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
     if box is None:
         _warn_of_digits(rows, x, y)
         return
-    far = np.flatnonzero(~_inside(x, y, box) & rows.ok)
+    far = np.flatnonzero(~_inside(x, y, box if known else _doubled(box)) & rows.ok)
     exchanged = _inside(y[far], x[far], box)
     swapped, off = far[exchanged], far[~exchanged]
     if known and 2 * len(swapped) > used:
@@ -219,8 +219,15 @@ def _warn_of_strays(rows: Rows, x: Floats, y: Floats, swapped: NDArray[np.intp])
             strays.update(group.tolist())
         elif gaps[start] > OTHER_SYSTEM * extents[start]:
             _warn_of_system(rows, group, float(gaps[start]), float(extents[start]), x, y)
+    last = off[-few:]
     outermost = np.flatnonzero(gaps[-few:] > OUTERMOST * extents[-few:])
-    strays.update(off[-few:][outermost[0] :].tolist() if outermost.size else ())
+    if outermost.size:
+        tail = last[outermost[0] :]
+        others = used.copy()
+        others[tail] = False
+        around = _Box.of(x, y, others)
+        # A wrong digit moves one coordinate; a hole farther out is mostly so in both.
+        strays.update(i for i in tail.tolist() if around.off_in_one(x[i], y[i]))
     others = used.copy()
     others[list(strays)] = False
     around = _Box.of(x, y, others)
@@ -289,6 +296,10 @@ class _Box(NamedTuple):
     def extent(self) -> float:
         return max(float(np.hypot(self.east - self.west, self.north - self.south)), 1.0)
 
+    def off_in_one(self, x: float, y: float) -> bool:
+        """Return whether a place lies outside in one coordinate, and inside in the other."""
+        return (self.west <= x <= self.east) != (self.south <= y <= self.north)
+
     def away(self, x: float, y: float) -> float:
         return float(np.hypot(max(self.west - x, x - self.east, 0.0), max(self.south - y, y - self.north, 0.0)))
 
@@ -320,6 +331,13 @@ def spread_out(x: Floats, y: Floats) -> bool:
         part = (longer[first : first + _CHUNK] - low) * (_BINS / length)
         bins += np.bincount(part.astype(np.intp), minlength=_BINS + 1)
     return bool(2 * np.convolve(bins, np.ones(3, np.intp)).max() < x.size)
+
+
+def _doubled(box: Region) -> Region:
+    """Return the box of twice the sides around the same middle: a row outside it is far from the crowd."""
+    west, east, south, north = box
+    wide, high = (east - west) / 2, (north - south) / 2
+    return (west - wide, east + wide, south - high, north + high)
 
 
 def _inside(x: Floats, y: Floats, box: Region) -> NDArray[np.bool_]:

@@ -17,7 +17,8 @@ Floats = NDArray[np.float64]
 #: A collar is off the ground by more than this many times the usual distance, and at least so many metres; all are off
 #: where the median is.
 GROUND_SPREAD, GROUND_LEAST = 8.0, 5.0
-#: The same for the median of the nearest collars, of which so many are compared.
+#: A collar is off its neighbours, of which so many are compared, if it lies outside their elevations by more than these
+#: differ, this many times the usual difference per distance, and at least so many metres.
 NEAR_SPREAD, NEAR_LEAST, NEAREST = 12.0, 20.0, 8
 #: Where more than this share of the collars is off, one warning counts them.
 FEW = 0.05
@@ -37,7 +38,14 @@ def check_heights(rows: Rows, x: Floats, y: Floats, z: Floats, ground: Ground | 
         others = near[near != np.arange(len(used))[:, None]]
         if others.size == NEAREST * len(used):
             flat = z[used] - _plane(plan, z[used])
-            _check_near(rows, used, flat - np.median(flat[others.reshape(-1, NEAREST)], axis=1))
+            others = others.reshape(-1, NEAREST)
+            # One of them may be wrong itself.
+            around = np.sort(flat[others], axis=1)[:, 1:-1]
+            height = flat - np.clip(flat, around[:, 0], around[:, -1])
+            distance = np.linalg.norm(plan[others] - plan[:, None], axis=2).mean(axis=1)
+            steepness = np.median(np.abs(flat - np.median(flat[others], axis=1)) / np.maximum(distance, 1e-9))
+            allowed = np.maximum(np.ptp(around, axis=1), NEAR_SPREAD * steepness * distance)
+            _check_near(rows, used, height, np.maximum(allowed, NEAR_LEAST))
 
 
 def _check_ground(rows: Rows, used: NDArray[np.intp], height: Floats) -> None:
@@ -73,13 +81,13 @@ def _check_ground(rows: Rows, used: NDArray[np.intp], height: Floats) -> None:
         )
 
 
-def _check_near(rows: Rows, used: NDArray[np.intp], height: Floats) -> None:
-    off = np.flatnonzero(np.abs(height) > max(NEAR_SPREAD * _spread(height), NEAR_LEAST))
+def _check_near(rows: Rows, used: NDArray[np.intp], height: Floats, allowed: Floats) -> None:
+    off = np.flatnonzero(np.abs(height) > allowed)
     many = len(off) > max(3, FEW * len(used))
     for k in off[: 1 if many else None].tolist():
         reason = message(
             "io.collar-off-neighbours",
-            "The collar lies {height:+.1f} m from what the {count} nearest collars support",
+            "The collar lies {height:+.1f} m outside the elevations of the {count} nearest collars",
             height=height[k],
             count=NEAREST,
         )

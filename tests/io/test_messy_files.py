@@ -119,6 +119,32 @@ def test_degrees_under_x_and_y_are_warned_of(read, campaign):
     assert not of(read(table(COLLAR, metres)), "io.places-like-degrees")
 
 
+def test_a_hole_far_north_of_a_core_in_a_local_grid_is_not_exchanged(write):
+    rng = np.random.default_rng(4)
+    places = [*(rng.uniform(-50, 50, (40, 2)) + np.array([500, 0])), (0.0, 1000.0)]
+    found = read_boreholes(
+        write("hole,x,y,z\n" + "".join(f"B{i},{x:.1f},{y:.1f},9\n" for i, (x, y) in enumerate(places)))
+    )
+    assert len(found.holes) == 41
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("layout", ["core and rim", "steps out", "two groups", "line"])
+def test_sound_layouts_on_a_hillside_have_no_warning(write, layout, seed):
+    rng = np.random.default_rng(seed)
+    xy = {
+        "core and rim": np.concatenate((rng.uniform(-100, 100, (80, 2)), rng.uniform(-2000, 2000, (12, 2)))),
+        "steps out": np.concatenate((rng.uniform(-150, 150, (80, 2)), [(900, 700), (-800, 900), (-700, -1200)])),
+        "two groups": np.concatenate(
+            (rng.normal(0, 150, (60, 2)), rng.normal(0, 150, (20, 2)) + np.array([2500, 800]))
+        ),
+        "line": np.column_stack((np.sort(rng.uniform(0, 9000, 60)), rng.normal(0, 30, 60))),
+    }[layout]
+    z = 1200 + 0.25 * xy[:, 0] + 40 * np.sin(xy[:, 1] / 400) + 15 * np.sin(xy[:, 0] / 150)
+    rows = [(f"B{i}", *(round(float(part), 2) for part in row), 50) for i, row in enumerate(np.c_[xy + 501000, z])]
+    assert codes(read_boreholes(write(table(COLLAR, rows)))) == set()
+
+
 # Elevations of collars
 
 
