@@ -65,8 +65,8 @@ CLIFF = 0.5
 RESOLVED = 0.03
 #: The same where this share of the points is on named sections: those are drawn, and what varies along them is relief.
 RESOLVED_DRAWN, DRAWN = 0.2, 0.9
-#: The same for noise within the interior tolerance.
-LITTLE = 0.05
+#: The same for noise within these shares of the interior tolerance: what is far below it bends no surface visibly.
+LITTLE = ((1.0, 0.05), (0.3, 0.2))
 #: Share of the noise by which the nearest points must differ at least: what they share more of is relief.
 SHARED = 0.5
 #: Spans between neighbours of one section, as a share of their distance, where knots run through the whole surface.
@@ -275,7 +275,8 @@ def _refuse_noise(core: Core, drawn: float) -> None:
     """
     field, inside = core.field if core.relief is None else core.relief.field, np.flatnonzero(core.inside)
     resolved = (RESOLVED_DRAWN if drawn >= DRAWN else RESOLVED) * field.spread
-    limit = max(resolved, min(core.settings.interior_tolerance, LITTLE * field.spread))
+    tolerance = core.settings.interior_tolerance
+    limit = max(resolved, *(min(share * tolerance, part * field.spread) for share, part in LITTLE))
     if field.noise <= limit:
         return
     if near_noise(core.data.plane[inside], core.misfit(inside)) > max(limit, SHARED * field.noise):

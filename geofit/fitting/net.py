@@ -413,9 +413,9 @@ class Periphery:
         reason = message("fitting.control-points-used-up", "no more control points are allowed there")
         if released:
             reason = message(
-                "fitting.neighbours-contradict",
-                "neighbours closer together than the knots contradict each other there (strict meets them where knots "
-                "allow, and the surface swings between them)",
+                "fitting.points-too-close-for-knots",
+                "the knots there are longer than the distance to the next point or to the core, so the surface would "
+                "swing if it met them (strict meets them where knots allow)",
             )
         close = crowded(outer_of(base), self.data.plane) if self.field.contradictory or released else None
         if close is not None:
