@@ -58,7 +58,7 @@ def shape(reason: str) -> str:
     reason = re.sub(r"'[^']*'", "'…'", reason)
     reason = re.sub(r"\bHole \S+: \S+ occurs", "Hole …: … occurs", reason)
     reason = re.sub(r"\b(Hole|Horizon|hole(?= \S+ \(row)|base of|top of) [^\s:]+", r"\1 …", reason)
-    return re.sub(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", "#", reason)
+    return re.sub(r"[-+−]?\d+(\.\d+)?(e[-+]?\d+)?", "#", reason)
 
 
 def _order(item: tuple[tuple[str, str], list[str]]) -> tuple[str, int, str]:
@@ -81,8 +81,9 @@ def chapter(name: str, found: Import) -> list[str]:
     lines += ["", f"{len(found.site.holes)} holes; {len(horizons)} horizons with {points} points.", ""]
     findings: dict[tuple[str, str], list[str]] = {}
     for issue in found.issues:
-        if issue.severity != "note" or issue.reason.startswith("Read as"):
-            findings.setdefault((issue.severity, shape(issue.reason)), []).append(re.sub(r"\S*/", "", issue.reason))
+        reason = str(issue.reason)
+        if issue.severity != "note" or reason.startswith("Read as"):
+            findings.setdefault((issue.severity, shape(reason)), []).append(re.sub(r"\S*/", "", reason))
     if findings:
         lines += ["| times | severity | finding |", "|---:|---|---|"]
         for (severity, reason), texts in sorted(findings.items(), key=_order):

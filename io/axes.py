@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.messages import Untranslated, message
+from geofit.io.columns import plain_name
 from geofit.io.rows import Rows
 
 __all__ = ["Region", "check_axes", "grown_box", "place_in"]
@@ -17,10 +19,20 @@ Floats = NDArray[np.float64]
 
 #: Bins along the longer side of all places; fewer than 20, so that rounding does no harm.
 _BINS = 19
-#: Places that are counted together.
-_CHUNK = 1 << 16
-#: Rows are strays beyond this many extents of the others, if they are no more than this share of all.
-STRAY, STRAYS = 3.0, 0.05
+#: Places that are counted together; of more than that, those that are evenly spread are not looked at one by one.
+_CHUNK = _MANY = 1 << 16
+#: Rows are strays beyond this many extents of the others, if they are no more than this share of all; the outermost of
+#: all also beyond the second number, if one of their coordinates alone is off.
+STRAY, OUTERMOST, STRAYS = 3.0, 1.0, 0.05
+#: More rows than strays, beyond this many extents of the others, are in another coordinate system.
+OTHER_SYSTEM = 20.0
+#: The crowd within which places are looked at first, in median distances: any row in it with x and y exchanged is
+#: taken for one; any beyond the nearer one may be a stray.
+EXCHANGED_REACH, STRAY_REACH = 20.0, 4.0
+#: Places of longitude and latitude cover less than this, degrees.
+DEGREES = 10.0
+#: What x and y are called where the header leaves open which is the easting.
+_BARE = {"x", "y", "xcoord", "ycoord", "xcoordinate", "ycoordinate", "x坐标", "y坐标", "坐标x", "坐标y"}
 #: (0, 0) is a placeholder where the places lie farther than this from it, metres.
 ORIGIN = 1000.0
 
@@ -47,8 +59,8 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
     """Reject rows at the placeholder (0, 0) or whose x and y look exchanged, and warn of rows far off.
 
     A row looks exchanged when it lies outside ``region`` and would lie inside with x and y swapped. Without a
-    region the rows themselves make one: 20 median distances around their median; of the rows outside it, the
-    few that lie more than three extents of the others away from them are warned of.
+    region the rows themselves make one, around their median; the few that lie farther from the others than these
+    extend are warned of, and so is a table that seems to be in degrees, in two systems, or exchanged as a whole.
 
     Raises
     ------
@@ -63,8 +75,9 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
     known = region is not None
     box = region if region is not None else _crowd(x, y) if used == len(rows) else _crowd(x[rows.ok], y[rows.ok])
     if box is None:
+        _warn_of_digits(rows, x, y)
         return
-    far = np.flatnonzero(~_inside(x, y, box) & rows.ok)
+    far = np.flatnonzero(~_inside(x, y, box if known else _doubled(box)) & rows.ok)
     exchanged = _inside(y[far], x[far], box)
     swapped, off = far[exchanged], far[~exchanged]
     if known and 2 * len(swapped) > used:
@@ -96,7 +109,8 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
             message("io.x-is-easting", "x is the easting, y the northing."),
         )
     if not known:
-        _warn_of_strays(rows, x, y, off, box)
+        _warn_of_digits(rows, x, y)
+        _warn_of_strays(rows, x, y, swapped)
     elif off.size:
         i = int(off[0])
         rows.warn(
@@ -131,29 +145,96 @@ def _reject_placeholders(rows: Rows, x: Floats, y: Floats, region: Region | None
         )
 
 
-def _warn_of_strays(rows: Rows, x: Floats, y: Floats, off: NDArray[np.intp], box: Region) -> None:
-    """Warn of the few rows that lie several times the extent of all others away from them."""
-    if not off.size:
+def _warn_of_digits(rows: Rows, x: Floats, y: Floats) -> None:
+    """Warn of a table whose coordinates have the digits of degrees, or of a northing under x and an easting under y."""
+    east, north = x[rows.ok], y[rows.ok]
+    headers = [rows.table.header[rows.columns[role]] for role in ("x", "y")]
+    extent = max(float(np.ptp(east)), float(np.ptp(north)))
+    degrees = np.abs(east).max() <= 180.0 and np.abs(north).max() <= 90.0 and 0 < extent < DEGREES
+    if degrees and not any((part == np.round(part, 2)).all() for part in (east, north)):
+        rows.journal.add(
+            "warning",
+            rows.file,
+            message(
+                "io.places-like-degrees",
+                "All rows lie within {extent:.3g} m, around x = {x:.7g}, y = {y:.7g}: they may be longitude and "
+                "latitude, and are read as metres",
+                extent=extent,
+                x=float(np.median(east)),
+                y=float(np.median(north)),
+            ),
+            message(
+                "io.state-degrees",
+                "If they are degrees, name the columns longitude and latitude, and state the grid of the site: "
+                '[site] crs = "EPSG:..." (geofit fit and geofit import: --crs).',
+            ),
+            column=headers[0],
+        )
+    # Northings have seven digits; eastings six, or eight with the zone in front. A header that names them is believed.
+    first, second = float(np.median(np.abs(east))), float(np.median(np.abs(north)))
+    named = {plain_name(header)[0] for header in headers}
+    if named <= _BARE and 1e6 <= first < 1e7 and (1e5 <= second < 1e6 or 1e7 <= second < 1e8):
+        rows.journal.add(
+            "warning",
+            rows.file,
+            message(
+                "io.axes-like-exchanged",
+                "x is around {x:.0f}, of seven digits like a northing, y around {y:.0f}, of {digits} like an easting: "
+                "they may be exchanged, and the site would be mirrored",
+                x=first,
+                y=second,
+                digits=message("io.six-digits", "six") if second < 1e6 else message("io.eight-digits", "eight"),
+            ),
+            message(
+                "io.state-columns-exchanged",
+                "x is the easting. If they are exchanged, state columns = {{ x = {y}, y = {x} }} in a site or mapping "
+                "file; otherwise name the columns easting and northing.",
+                x=Untranslated(json.dumps(headers[0], ensure_ascii=False)),
+                y=Untranslated(json.dumps(headers[1], ensure_ascii=False)),
+            ),
+            column=headers[0],
+        )
+
+
+def _warn_of_strays(rows: Rows, x: Floats, y: Floats, swapped: NDArray[np.intp]) -> None:
+    """Warn of the few rows that lie farther from all others than these extend, and of many that lie much farther."""
+    used = rows.ok.copy()
+    used[swapped] = False
+    box = _crowd(x[used], y[used], STRAY_REACH)
+    if box is None:
         return
     middle = (box[0] + box[1]) / 2, (box[2] + box[3]) / 2
+    inside = _inside(x, y, box) & used
+    off = np.flatnonzero(used & ~inside)
+    if not off.size or not inside.any():
+        return
     off = off[np.argsort(np.hypot(x[off] - middle[0], y[off] - middle[1]), kind="stable")]
-    groups: list[list[int]] = [[]]
-    around = _Box.of(x, y, _inside(x, y, box) & rows.ok)
-    for i in off.tolist():
-        # Outwards from the crowd: a thin rim widens the extent step by step, a gap begins another group.
-        if around.away(x[i], y[i]) > STRAY * around.extent:
-            groups.append([])
-        groups[-1].append(i)
-        around = around.with_place(x[i], y[i])
-    few = max(1, int(STRAYS * rows.ok.sum()))
-    strays = [i for group in groups[1:] if len({(x[i], y[i]) for i in group}) <= few for i in group]
-    others = rows.ok.copy()
-    others[strays] = False
+    gaps, extents = _gaps(x, y, off, _Box.of(x, y, inside))
+    # Outwards from the crowd: a thin rim widens the extent step by step, a gap begins another group.
+    starts = np.flatnonzero(gaps > STRAY * extents)
+    few = max(1, int(STRAYS * used.sum()))
+    strays: set[int] = set()
+    for start, group in zip(starts.tolist(), np.split(off, starts)[1:], strict=True):
+        if len(set(zip(x[group].tolist(), y[group].tolist(), strict=True))) <= few:
+            strays.update(group.tolist())
+        elif gaps[start] > OTHER_SYSTEM * extents[start]:
+            _warn_of_system(rows, group, float(gaps[start]), float(extents[start]), x, y)
+    last = off[-few:]
+    outermost = np.flatnonzero(gaps[-few:] > OUTERMOST * extents[-few:])
+    if outermost.size:
+        tail = last[outermost[0] :]
+        others = used.copy()
+        others[tail] = False
+        around = _Box.of(x, y, others)
+        # A wrong digit moves one coordinate; a hole farther out is mostly so in both.
+        strays.update(i for i in tail.tolist() if around.off_in_one(x[i], y[i]))
+    others = used.copy()
+    others[list(strays)] = False
     around = _Box.of(x, y, others)
-    for i in strays:
+    for i in sorted(strays):
         rows.warn(
             i,
-            "x",
+            "y" if max(around.south - y[i], y[i] - around.north) > max(around.west - x[i], x[i] - around.east) else "x",
             message(
                 "io.row-far-from-others",
                 "x = {x:.15g}, y = {y:.15g} lies {distance:.0f} m from the other rows, which cover {extent:.0f} m",
@@ -164,6 +245,39 @@ def _warn_of_strays(rows: Rows, x: Floats, y: Floats, off: NDArray[np.intp], box
             ),
             message("io.check-stray-coordinates", "Check its coordinates, or remove the row."),
         )
+
+
+def _gaps(x: Floats, y: Floats, off: NDArray[np.intp], crowd: _Box) -> tuple[Floats, Floats]:
+    """Return how far each of the rows ``off`` lies from the crowd and the rows before it, and how far these extend."""
+    west, south = (
+        np.minimum.accumulate(np.r_[low, part[off]])[:-1] for low, part in ((crowd.west, x), (crowd.south, y))
+    )
+    east, north = (
+        np.maximum.accumulate(np.r_[high, part[off]])[:-1] for high, part in ((crowd.east, x), (crowd.north, y))
+    )
+    aside = np.maximum(np.maximum(west - x[off], x[off] - east), 0.0)
+    along = np.maximum(np.maximum(south - y[off], y[off] - north), 0.0)
+    return np.hypot(aside, along), np.maximum(np.hypot(east - west, north - south), 1.0)
+
+
+def _warn_of_system(rows: Rows, group: NDArray[np.intp], distance: float, extent: float, x: Floats, y: Floats) -> None:
+    """Warn once of many rows that lie so far from the others that one surface cannot be meant."""
+    i = int(group.min())
+    rows.warn(
+        i,
+        "x",
+        message(
+            "io.rows-of-another-system",
+            "{count} rows lie {distance:.0f} m from the others, which cover {extent:.0f} m, the first at x = {x:.15g}, "
+            "y = {y:.15g}: they may be in another coordinate system",
+            count=len(group),
+            distance=distance,
+            extent=extent,
+            x=x[i],
+            y=y[i],
+        ),
+        message("io.convert-or-split", "Convert them to the system of the others, or import two sites one by one."),
+    )
 
 
 class _Box(NamedTuple):
@@ -182,20 +296,23 @@ class _Box(NamedTuple):
     def extent(self) -> float:
         return max(float(np.hypot(self.east - self.west, self.north - self.south)), 1.0)
 
+    def off_in_one(self, x: float, y: float) -> bool:
+        """Return whether a place lies outside in one coordinate, and inside in the other."""
+        return (self.west <= x <= self.east) != (self.south <= y <= self.north)
+
     def away(self, x: float, y: float) -> float:
         return float(np.hypot(max(self.west - x, x - self.east, 0.0), max(self.south - y, y - self.north, 0.0)))
 
-    def with_place(self, x: float, y: float) -> _Box:
-        return _Box(min(self.west, x), max(self.east, x), min(self.south, y), max(self.north, y))
 
-
-def _crowd(x: Floats, y: Floats) -> Region | None:
-    if x.size < 4 or spread_out(x, y):
+def _crowd(x: Floats, y: Floats, reach: float = EXCHANGED_REACH) -> Region | None:
+    """Return the box of so many median distances around the median; None of few or evenly spread places."""
+    if x.size < 4 or (x.size > _MANY and spread_out(x, y)):
         return None
-    cx, cy = float(np.median(x)), float(np.median(y))
+    # Of two halves that lie far apart, the middle of one, not a place between them.
+    cx, cy = (float(np.quantile(part, 0.5, method="lower")) for part in (x, y))
     away = x - cx
     np.hypot(away, y - cy, out=away)
-    reach = 20.0 * float(np.median(away, overwrite_input=True)) + 1.0
+    reach = reach * float(np.quantile(away, 0.5, method="lower", overwrite_input=True)) + 1.0
     return (cx - reach, cx + reach, cy - reach, cy + reach)
 
 
@@ -214,6 +331,13 @@ def spread_out(x: Floats, y: Floats) -> bool:
         part = (longer[first : first + _CHUNK] - low) * (_BINS / length)
         bins += np.bincount(part.astype(np.intp), minlength=_BINS + 1)
     return bool(2 * np.convolve(bins, np.ones(3, np.intp)).max() < x.size)
+
+
+def _doubled(box: Region) -> Region:
+    """Return the box of twice the sides around the same middle: a row outside it is far from the crowd."""
+    west, east, south, north = box
+    wide, high = (east - west) / 2, (north - south) / 2
+    return (west - wide, east + wide, south - high, north + high)
 
 
 def _inside(x: Floats, y: Floats, box: Region) -> NDArray[np.bool_]:

@@ -17,21 +17,26 @@ from geofit.data.logs import IntervalLog
 from geofit.data.messages import Untranslated, message
 from geofit.data.site import Ground, Hole, ImportIssue, TableCount
 from geofit.io.axes import Region, check_axes
+from geofit.io.collar_heights import check_heights
 from geofit.io.columns import COLLAR, COLLAR_ON_GROUND, INTERVALS, plain_name
 from geofit.io.desurvey import Desurvey, WellPath, desurvey
 from geofit.io.journal import Journal
 from geofit.io.lower_limits import tops_from_above
-from geofit.io.rows import Rows, read_rows
+from geofit.io.rows import Rows, name_key, read_rows
 from geofit.io.source import Source, as_source
-from geofit.io.surveys import Stations, read_stations
+from geofit.io.surveys import Collar, Stations, read_stations
+from geofit.io.units import METRES
 
 __all__ = ["Boreholes", "DipSign", "IntervalLog", "load_boreholes", "read_boreholes"]
 
 Floats = NDArray[np.float64]
+Strings = NDArray[np.str_]
 DipSign = Literal["down-positive", "down-negative"]
 
 #: Depths of logs are written in centimetres: smaller differences are none, metres.
 DEPTH_TOLERANCE = 0.005
+#: Logs and holes are of different units where their depths have the ratio of these, but for this share.
+SAME_RATIO = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,13 +53,6 @@ class Boreholes:
     issues: tuple[ImportIssue, ...] = ()
     counts: tuple[TableCount, ...] = ()
     inputs: Mapping[str, str] | None = None
-
-
-@dataclass(frozen=True)
-class _Collar:
-    xyz: tuple[float, float, float]
-    end: float
-    stations: Stations | None
 
 
 @arguments_checked
@@ -136,7 +134,18 @@ def load_boreholes(
 ) -> Boreholes:
     """Read boreholes; the journal receives what is found."""
     collars = _read_collars(collar, dip, journal, region, declination, ground)
-    stations = read_stations(survey, dip, list(collars), journal, declination) if survey is not None else {}
+    stations = read_stations(survey, dip, collars, journal, declination) if survey is not None else {}
+    if survey is None and not any(mouth.stations for mouth in collars.values()):
+        journal.add(
+            "note",
+            collar.name,
+            message(
+                "io.holes-taken-as-vertical", "There is no survey: all holes ({count}) are vertical", count=len(collars)
+            ),
+            message(
+                "io.add-survey", "If some are inclined, add the survey table, or azimuth and dip to the collar table."
+            ),
+        )
     paths = {}
     for name, mouth in collars.items():
         surveyed = stations.get(name) or mouth.stations or Stations.vertical()
@@ -162,14 +171,22 @@ def _read_collars(
     region: Region | None,
     declination: float,
     ground: Ground | None,
-) -> dict[str, _Collar]:
+) -> dict[str, Collar]:
     rows = read_rows(source, COLLAR if ground is None else COLLAR_ON_GROUND, journal)
     name = rows.text("hole")
     x, y = rows.places()
     z = rows.numbers("z", required=ground is None, no_data=True)
     if ground is not None:
         _drape(rows, x, y, z, ground)
-    end = rows.numbers("depth", required=False)
+    end = rows.numbers("depth", required=False, no_data=True)
+    for i in np.flatnonzero(end == 0).tolist():
+        rows.warn(
+            i,
+            "depth",
+            message("io.hole-depth-zero", "The hole's depth is 0; it is taken as not known"),
+            message("io.give-hole-length", "Give the length of the hole in metres."),
+        )
+    end[end == 0] = np.nan
     for i in np.flatnonzero(end < 0).tolist():
         rows.reject(
             i,
@@ -178,7 +195,9 @@ def _read_collars(
             message("io.give-hole-length", "Give the length of the hole in metres."),
         )
     check_axes(rows, x, y, region)
+    check_heights(rows, x, y, z, ground)
     first: dict[str, int] = {}
+    alike: dict[tuple[str, ...], int] = {}
     places: dict[tuple[float, float, float], int] = {}
     for i in np.flatnonzero(rows.ok).tolist():
         if name[i] in first:
@@ -202,6 +221,15 @@ def _read_collars(
             )
             continue
         first[name[i]] = i
+        k = alike.setdefault(name_key(name[i]), i)
+        if k != i:
+            reason = message(
+                "io.hole-named-alike",
+                "The name differs from hole {hole} (row {row}) only in case, leading zeros, blanks or hyphens",
+                hole=Untranslated(name[k]),
+                row=rows.line[k],
+            )
+            rows.warn(i, "hole", reason, message("io.remove-or-rename-hole", "If they are one hole, remove one."))
         k = places.setdefault((x[i], y[i], z[i]), i)
         if k != i:
             reason = message(
@@ -219,13 +247,8 @@ def _read_collars(
                 Untranslated(rows.file),
                 message("data.place-row", "row {row}", row=int(rows.line[i])),
             )
-    if not first:
-        raise InputError(
-            message("io.no-usable-collar", "No row of the collar table can be used"),
-            message("io.see-listed-rows", "See the listed rows."),
-            file=source.name,
-        ) from None
-    return {hole: _Collar((x[i], y[i], z[i]), end[i], attitudes.get(hole)) for hole, i in first.items() if rows.ok[i]}
+    rows.require_any()
+    return {hole: Collar((x[i], y[i], z[i]), end[i], attitudes.get(hole)) for hole, i in first.items() if rows.ok[i]}
 
 
 def _drape(rows: Rows, x: Floats, y: Floats, z: Floats, ground: Ground) -> None:
@@ -256,8 +279,8 @@ def _collar_stations(rows: Rows, name: list[str], dip: DipSign | None, declinati
     return Stations.from_rows(rows, name, np.zeros(len(rows)), dip, blank_is_vertical=True, declination=declination)
 
 
-def _by_elevation(rows: Rows, top: Floats, base: Floats, mouth: Floats) -> bool:
-    """Whether the limits are elevations: as stated, by their names, or because they descend below the collar."""
+def _by_elevation(rows: Rows, name: Strings, top: Floats, base: Floats, mouth: Floats) -> bool:
+    """Whether the limits are elevations: as stated, by their names, or because they descend from the collar."""
     if rows.source.measure is not None:
         return rows.source.measure == "elevation"
     headers = [rows.table.header[rows.columns[role]] for role in ("from", "to") if role in rows.columns]
@@ -278,7 +301,12 @@ def _by_elevation(rows: Rows, top: Floats, base: Floats, mouth: Floats) -> bool:
         )
     if all(elevations):
         reason = message("io.by-column-names", "by their names")
-    elif sound.sum() >= 3 and falls.sum() > 0.6 * sound.sum() and np.ptp(mouth[sound]) > 0:
+    elif (
+        sound.sum() >= 3
+        and falls.sum() > 0.6 * sound.sum()
+        and np.ptp(mouth[sound]) > 0
+        and _begin_at_mouth(name[sound], top[sound], base[sound], mouth[sound])
+    ):
         reason = message(
             "io.because-intervals-descend",
             "because {count} of {total} intervals descend from the collar's elevation",
@@ -295,6 +323,15 @@ def _by_elevation(rows: Rows, top: Floats, base: Floats, mouth: Floats) -> bool:
         column=headers[0],
     )
     return True
+
+
+def _begin_at_mouth(name: Strings, top: Floats, base: Floats, mouth: Floats) -> bool:
+    """Whether most holes begin nearer the elevation of their mouth than 0, where depths that run upwards end."""
+    _, first, hole = np.unique(name, return_index=True, return_inverse=True)
+    highest, lowest = np.full(len(first), -np.inf), np.full(len(first), np.inf)
+    np.maximum.at(highest, hole, top)
+    np.minimum.at(lowest, hole, base)
+    return bool(np.median(np.abs(highest - mouth[first]) - np.abs(lowest)) < 0)
 
 
 def _to_depths(rows: Rows, name: list[str], paths: Mapping[str, WellPath], limits: Floats, role: str) -> Floats:
@@ -319,8 +356,39 @@ def _to_depths(rows: Rows, name: list[str], paths: Mapping[str, WellPath], limit
     return depth
 
 
+def _warn_of_feet(rows: Rows, name: Strings, base: Floats, end: Floats) -> None:
+    """Warn where most logs end 3.28 times as deep as their holes, or at that part of them."""
+    used = rows.ok & np.isfinite(end)
+    _, first, hole = np.unique(name[used], return_index=True, return_inverse=True)
+    deepest = np.zeros(len(first))
+    np.maximum.at(deepest, hole, base[used])
+    ratio = deepest / end[used][first]
+    for factor, log, other in (
+        (1.0 / METRES["ft"], "ft", "m"),
+        (METRES["ft"], "m", "ft"),
+    ):
+        count = int((np.abs(ratio / factor - 1.0) < SAME_RATIO).sum())
+        if len(ratio) >= 3 and 2 * count > len(ratio):
+            rows.journal.add(
+                "warning",
+                rows.file,
+                message(
+                    "io.log-of-other-unit",
+                    "In {count} of {total} holes the log is {factor:.2f} times as deep as the hole: the log may be in "
+                    "{log}, the depths of the collar table in {other}",
+                    count=count,
+                    total=len(ratio),
+                    factor=factor,
+                    log=log,
+                    other=other,
+                ),
+                message("io.mark-unit", 'Mark the columns that are in feet, as in "depth (ft)".'),
+                column=rows.table.header[rows.columns["to"]],
+            )
+
+
 def _read_log(
-    source: Source, collars: Mapping[str, _Collar], paths: Mapping[str, WellPath], journal: Journal
+    source: Source, collars: Mapping[str, Collar], paths: Mapping[str, WellPath], journal: Journal
 ) -> IntervalLog:
     rows = read_rows(source, INTERVALS, journal)
     name, code = np.array(rows.text("hole")), np.array(rows.text("code"))
@@ -329,7 +397,7 @@ def _read_log(
     name = np.array(rows.require_known("hole", name.tolist(), collars, "collar table"))
     end = np.array([collars[h].end if h in collars else np.nan for h in name])
     mouth = np.array([collars[h].xyz[2] if h in collars else np.nan for h in name])
-    if _by_elevation(rows, top, base, mouth):
+    if _by_elevation(rows, name, top, base, mouth):
         if not lower_only:
             top = _to_depths(rows, name.tolist(), paths, top, "from")
         base = _to_depths(rows, name.tolist(), paths, base, "to")
@@ -337,10 +405,10 @@ def _read_log(
         top = tops_from_above(rows, name.tolist(), base, collars)
     for mask, role, reason, remedy in (
         (
-            top < 0,
+            (top < 0) | (base < 0),
             "from",
-            message("io.interval-starts-above-collar", "The interval starts above the collar"),
-            message("io.depths-count-down", "Depths count from the collar, downwards."),
+            message("io.interval-starts-above-collar", "The interval lies above the collar"),
+            message("io.depths-positive-down", "Depths are positive and count from the collar, downwards."),
         ),
         (
             base < top,
@@ -357,6 +425,7 @@ def _read_log(
     ):
         for i in np.flatnonzero(mask & rows.ok).tolist():
             rows.reject(i, role, reason, remedy)
+    _warn_of_feet(rows, name, base, end)
     for i in np.flatnonzero((top > end - DEPTH_TOLERANCE) & rows.ok).tolist():
         reason = message(
             "io.interval-beyond-hole",

@@ -56,43 +56,50 @@ def _spelled(words: str) -> tuple[str, ...]:
 _HOLE = _spelled(
     "hole holeid bhid holename holenumber holeno borehole boreholeid boreholename boreholeno drillhole dhid collarid "
     "locationid locaid pointid well wellid wellname bore boreid wellbore uwi "
-    "孔号 钻孔编号 钻孔号 钻孔 钻孔名称 孔名 勘探点编号 bohrung bohrloch originalname id name 编号"
+    "孔号 钻孔编号 钻孔号 钻孔 钻孔名称 孔名 勘探点编号 "
+    "bohrung bohrloch bohrlochnr bohrungsnr bohrungnr bohrlochname bohrpunkt aufschluss "
+    "sondage forage nomsondage nomforage originalname id name 编号"
 )
 _X = _spelled(
     "x east easting eastings locanate holenate xcollar collarx xcoord xcoordinate coordx locationx locx "
     "pointx utme utmeasting "
-    "e 坐标x x坐标 东坐标 东 东向坐标 横坐标 rechtswert ostwert"
+    "e 坐标x x坐标 东坐标 东 东向坐标 横坐标 rechtswert ostwert abscisse"
 )
 _Y = _spelled(
     "y north northing northings locanatn holenatn ycollar collary ycoord ycoordinate coordy locationy locy pointy utmn "
-    "utmnorthing n 坐标y y坐标 北坐标 北 北向坐标 纵坐标 hochwert nordwert"
+    "utmnorthing n 坐标y y坐标 北坐标 北 北向坐标 纵坐标 hochwert nordwert ordonnée ordonnee"
 )
 _Z = _spelled(
     "z elevation elev locagl holegl zcollar collarz zcoord zcoordinate coordz rl altitude height level groundlevel gl "
     "groundelevation collarelevation surfaceelevation pointz msl "
-    "孔口高程 孔口标高 高程 标高 地面高程 坐标z z坐标 海拔 höhe hoehe ansatzhöhe geländehöhe"
+    "孔口高程 孔口标高 高程 标高 地面高程 坐标z z坐标 海拔 höhe hoehe ansatzhöhe geländehöhe "
+    "geländeoberkante gok cote"
 )
 _END = _spelled(
     "depth maxdepth locafdep holefdep totaldepth finaldepth enddepth eoh eohdepth td holedepth length holelength "
-    "孔深 终孔深度 终孔孔深 钻孔深度 总深度 总深 深度 endteufe"
+    "孔深 终孔深度 终孔孔深 钻孔深度 总深度 总深 深度 endteufe endtiefe bohrtiefe "
+    "teufe tiefe profondeur profondeurtotale profondeurfinale"
 )
 _STATION = _spelled(
     "depth at md horntop measureddepth surveydepth distance depthat stationdepth 深度 测点深度 测斜深度 测深 孔深 井深 "
-    "tiefe teufe"
+    "tiefe teufe messtiefe messteufe profondeur"
 )
 _AZIMUTH = _spelled(
-    "azimuth azi az azim azm hornornt holeornt brg bearing dipazimuth dipdirection dipdir hazi 方位角 方位 倾向 azimut"
+    "azimuth azi az azim azm hornornt holeornt brg bearing dipazimuth dipdirection dipdir hazi 方位角 方位 倾向 azimut "
+    "richtung bohrrichtung"
 )
-_DIP = _spelled("dip dipangle hornincl holeincl plunge 倾角 倾斜角 倾伏角 neigung fallen einfallen")
+_DIP = _spelled("dip dipangle hornincl holeincl plunge 倾角 倾斜角 倾伏角 neigung fallen einfallen pendage plongement")
 _FROM = _spelled(
     "from depthfrom fromdepth start top depthtop topdepth geoltop "
     "起始深度 起深 起始 层顶深度 层顶埋深 顶板深度 顶板埋深 顶深 自 从 起 "
-    "topelevation elevationtop 层顶高程 层顶标高 顶板高程 顶板标高 von"
+    "topelevation elevationtop 层顶高程 层顶标高 顶板高程 顶板标高 "
+    "von tiefevon teufevon vontiefe oberkante de profondeurde toit"
 )
 _TO = _spelled(
     "to depthto todepth end bottom base depthbase basedepth depthbottom bottomdepth geolbase "
     "终止深度 止深 终止 结束深度 层底深度 层底埋深 底板深度 底板埋深 底深 至 到 止 "
-    "baseelevation elevationbase bottomelevation elevationbottom 层底高程 层底标高 底板高程 底板标高 bis"
+    "baseelevation elevationbase bottomelevation elevationbottom 层底高程 层底标高 底板高程 底板标高 "
+    "bis tiefebis teufebis bistiefe unterkante à profondeurà mur"
 )
 _CODE = _spelled(
     "code rockcode lithcode lithologycode geologycode unitcode "
@@ -100,7 +107,7 @@ _CODE = _spelled(
     "rock rocktype rockunit unit formation stratum stratigraphy strat simplelith geology weathering "
     "地层代号 代号 代码 编码 地层编号 层号 地层 岩性代号 岩性 "
     "岩性名称 岩石名称 岩土名称 地层名称 土层名称 岩层 风化程度 风化带 风化 风化等级 "
-    "schicht gestein petrographie stratigraphie"
+    "schicht gestein petrographie stratigraphie couche lithologie"
 )
 _HORIZON = _spelled(
     "horizon surface formation featurename feature interface contact surfacename horizonname layer "

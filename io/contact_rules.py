@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -14,12 +15,23 @@ from geofit.data.logs import IntervalLog
 from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
 
-__all__ = ["ContactRule", "Limit", "Occurrence", "simplified"]
+__all__ = ["ContactRule", "Limit", "Occurrence", "code_key", "simplified"]
 
 Limit = Literal["top", "base"]
 Occurrence = Literal["first", "last"]
 #: Depths nearer than this touch, metres.
 TOUCH = 0.005
+
+
+def code_key(code: str) -> str:
+    """Return what is the same for codes that differ only in case, blanks, hyphens, underscores and a last full stop.
+
+    Examples
+    --------
+    >>> [code_key(code) for code in ("SST.", "Sst ", "T2_a", "T2 - a", "T2a", "T2?")]
+    ['sst', 'sst', 't2 a', 't2 a', 't2a', 't2?']
+    """
+    return re.sub(r"[\s_-]+", " ", code.casefold()).strip(" .")
 
 
 @dataclass(frozen=True)

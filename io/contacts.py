@@ -15,7 +15,7 @@ from geofit.data.messages import Message, Untranslated, message
 from geofit.data.points import PointSet
 from geofit.data.site import ImportIssue
 from geofit.io.boreholes import DEPTH_TOLERANCE, Boreholes, IntervalLog
-from geofit.io.contact_rules import ContactRule, Limit, simplified
+from geofit.io.contact_rules import ContactRule, Limit, code_key, simplified
 from geofit.io.hints import nearest_name
 from geofit.io.journal import Journal
 
@@ -129,9 +129,9 @@ def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Jo
 
 
 def _warn_of_case(rule: ContactRule, codes: Sequence[str], file: str, journal: Journal) -> None:
-    """Warn of codes that differ from those of the rule in case only: they are not used."""
-    stated = {code.casefold() for code in rule.codes}
-    alike = [code for code in codes if code.casefold() in stated and code not in rule.codes]
+    """Warn of codes that differ from those of the rule in case or marks only: they are not used."""
+    stated = {code_key(code) for code in rule.codes}
+    alike = [code for code in codes if code_key(code) in stated and code not in rule.codes]
     if not alike:
         return
     both = "[" + ", ".join(f'"{code}"' for code in (*rule.codes, *alike)) + "]"
@@ -140,7 +140,7 @@ def _warn_of_case(rule: ContactRule, codes: Sequence[str], file: str, journal: J
         file,
         message(
             "io.code-differs-in-case",
-            "The codes {names} differ from {code} in case only, and do not count as it",
+            "The codes {names} differ from {code} in case or marks only, and do not count as it",
             names=", ".join(alike),
             code=Untranslated(rule.label),
         ),

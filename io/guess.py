@@ -203,6 +203,8 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
     columns: dict[str, int] = {}
     for role, guess in guesses.items():
         if role in schema.optional and guess.confidence < USABLE:
+            if any(cell.strip() for cell in table.columns[guess.index][:SAMPLE]):
+                _warn_of_unused(table, guess, journal)
             continue
         columns[role] = guess.index
         if not guess.stated:
@@ -227,6 +229,27 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
     if missing:
         raise _missing(table, schema, missing)
     return columns
+
+
+def _warn_of_unused(table: Table, guess: RoleGuess, journal: Journal) -> None:
+    journal.add(
+        "warning",
+        table.name,
+        message(
+            "io.optional-column-not-used",
+            "Column '{column}' is not used as {role}: its cells are not numbers with the decimal mark '{mark}', or not "
+            "in its range",
+            column=Untranslated(guess.column),
+            role=guess.role,
+            mark=table.decimal,
+        ),
+        message(
+            "io.state-columns-where-wrong",
+            "If this is wrong, state columns = {entry}.",
+            entry=f"{{ {guess.role} = ... }}",
+        ),
+        column=guess.column,
+    )
 
 
 def taken_as(guess: RoleGuess) -> Message:

@@ -13,7 +13,7 @@ from geofit.io.columns import HORIZON_COLUMNS
 from geofit.io.guess import locate
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
-from geofit.io.rows import NO_DATA, Rows, read_rows
+from geofit.io.rows import NO_DATA, Rows, is_blank, read_rows
 from geofit.io.source import Source
 from geofit.io.tables import parse_numbers
 from geofit.io.units import length_factors
@@ -127,7 +127,7 @@ def _values(rows: Rows, j: int, depths: bool) -> Floats:
     """Return the values of a column in metres, nan where there is none; cells that hold something else are listed."""
     cells, header = rows.table.columns[j], rows.table.header[j]
     values, bad = parse_numbers(cells, rows.table.decimal)
-    wrong = [i for i in bad.tolist() if cells[i].strip()]
+    wrong = [i for i in bad.tolist() if not is_blank(cells[i])]
     values[np.isin(values, NO_DATA)] = np.nan
     reasons = dict.fromkeys(wrong, message("io.cell-not-finite", "The cell is not a finite number; it gives no pick"))
     if depths:

@@ -17,7 +17,7 @@ from geofit.io.grid import load_ground
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping
 from geofit.io.preview import TablePreview, preview_file
-from geofit.io.rows import read_rows
+from geofit.io.rows import name_key, read_rows
 from geofit.io.sections import load_lines
 from geofit.io.source import Source
 
@@ -59,11 +59,12 @@ class ImportPlan:
         self.counts.append(TableCount(name, read, 0, read))
 
     def drop(self, error: InputError) -> bool:
-        """Set the part that an error names aside; False if it names none."""
+        """Set the part that an error names aside, and list why its rows cannot be used; False if it names none."""
         for parts in self.parts.values():
             for part in parts:
                 if error.file is not None and error.file == part.source.name:
                     parts.remove(part)
+                    self.issues += [one for one in error.issues if one.file == error.file and one.severity == "error"]
                     self.set_aside(
                         part.source.name,
                         part.preview.read,
@@ -113,6 +114,17 @@ def look_at(
                 EMPTY,
                 "note",
             )
+        elif preview.kind == "" and not preview.header:
+            (issue,) = preview.issues
+            plan.set_aside(
+                part_source.name,
+                0,
+                issue.reason,
+                issue.remedy,
+                row=issue.row,
+                column=issue.column,
+                value=issue.value,
+            )
         elif preview.kind == "":
             plan.set_aside(part_source.name, preview.read, *_not_recognised(preview))
         else:
@@ -146,6 +158,14 @@ def _not_recognised(preview: TablePreview) -> tuple[Message, Message]:
             "io.name-grid-with-crs",
             "Name the grid of the site, in metres, with --crs, such as EPSG:32650: they are projected to it.",
         )
+    if best >= 0.5 and not missing:
+        return message(
+            "io.file-without-numbers",
+            "The file is not used: it resembles a {kind} table, but too few of its cells are numbers with the decimal "
+            "mark '{mark}'",
+            kind=nearest,
+            mark=preview.decimal,
+        ), message("io.give-numbers-or-decimal", "Give plain numbers, or state decimal in a mapping file (--mapping).")
     if best >= 0.5:
         return message(
             "io.file-without-columns",
@@ -261,11 +281,12 @@ def campaigns(plan: ImportPlan) -> list[tuple[TablePart, TablePart | None, list[
     collars = plan.of("collar")
     surveys: dict[int, TablePart] = {}
     intervals: dict[int, list[TablePart]] = {}
-    holes = [_holes(part, "collar") for part in collars] if len(collars) > 1 else [set[str]()]
+    holes = [_holes(part, "collar") for part in collars] if len(collars) > 1 else [set[tuple[str, ...]]()]
     for kind in ("survey", "intervals"):
         for part in list(plan.of(kind)):
-            own = _holes(part, kind) if len(collars) > 1 else set[str]()
+            own = _holes(part, kind) if len(collars) > 1 else set[tuple[str, ...]]()
             k = max(range(len(collars)), key=lambda k: len(own & holes[k]))
+            _warn_of_others(plan, part, collars, [len(own & (other - holes[k])) for other in holes])
             if kind == "intervals":
                 intervals.setdefault(k, []).append(part)
             elif k not in surveys:
@@ -286,9 +307,30 @@ def campaigns(plan: ImportPlan) -> list[tuple[TablePart, TablePart | None, list[
     return [(collar, surveys.get(k), intervals.get(k, [])) for k, collar in enumerate(collars)]
 
 
-def _holes(part: TablePart, kind: str) -> set[str]:
+def _warn_of_others(plan: ImportPlan, part: TablePart, collars: Sequence[TablePart], counts: Sequence[int]) -> None:
+    """Warn of a table whose holes are in several collar tables: it is read with one of these."""
+    for collar, count in zip(collars, counts, strict=True):
+        issue = ImportIssue(
+            part.source.name,
+            0,
+            "",
+            "",
+            "warning",
+            message(
+                "io.holes-in-other-collars",
+                "Holes of this table that are in {file} only, and are not read: {count}",
+                file=Untranslated(collar.source.name),
+                count=count,
+            ),
+            message("io.join-collar-tables", "Join the collar tables."),
+        )
+        if count and issue not in plan.issues:
+            plan.issues.append(issue)
+
+
+def _holes(part: TablePart, kind: str) -> set[tuple[str, ...]]:
     try:
         names = read_rows(part.mapping.fill(part.source), SCHEMAS[kind], Journal()).text("hole")
-        return {name.casefold() for name in names}
+        return {name_key(name) for name in names}
     except InputError:
         return set()

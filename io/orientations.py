@@ -69,12 +69,7 @@ def load_orientations(source: Source, journal: Journal, region: Region | None = 
     azimuth, dip = _attitudes(rows)
     horizon = rows.text("horizon", required=False)
     rows.close()
-    if not rows.ok.any():
-        raise InputError(
-            message("io.no-usable-orientation", "No row of the orientations can be used"),
-            message("io.see-listed-rows", "See the listed rows."),
-            file=source.name,
-        )
+    rows.require_any()
     used = np.flatnonzero(rows.ok)
     return Orientations(
         np.column_stack([x, y, z])[used],

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from geofit.data.errors import GeofitError
+from geofit.data.errors import GeofitError, InputError
 from geofit.data.given import arguments_checked
 from geofit.data.site import ImportIssue
 from geofit.io.columns import HORIZON_COLUMNS, SCHEMAS, SECTIONS, Schema
@@ -145,17 +145,23 @@ def preview_file(path: str | Path | Source, mappings: Sequence[ColumnMapping] = 
         points = count_points(source)
         parts = [(mapping.kind, mapping.table) for mapping in applicable] or [("drawing", "")]
         return tuple(_fixed(replace(source, table=table, name=source.name), kind, points) for kind, table in parts)
-    previews = []
+    previews: list[TablePreview] = []
     usual = {name: kind for kind, names in _usual(ending).items() for name in names}
-    for name in table_names(source):
+    names = table_names(source)
+    for name in names:
         if usual and name not in usual:
             continue
         own = [mapping for mapping in applicable if not mapping.table or mapping.table == name]
         part = Source(path=source.path, name=source.name, table=name, target=source.target)
-        if own:
-            previews += [preview_table(mapping.fill(part), mapping.kind) for mapping in own]
-        else:
-            previews.append(preview_table(part, usual.get(name)))
+        try:
+            if own:
+                previews += [preview_table(mapping.fill(part), mapping.kind) for mapping in own]
+            else:
+                previews.append(preview_table(part, usual.get(name)))
+        except InputError as error:
+            if len(names) == 1:
+                raise
+            previews.append(_unreadable(part, error))
     return tuple(previews)
 
 
@@ -225,6 +231,14 @@ def preview_table(source: Source, kind: str | None = None) -> TablePreview:
 def _usual(ending: str) -> Mapping[str, tuple[str, ...]]:
     """Return the tables of an exchange format that hold holes, by kind: their names say what they are."""
     return USUAL_TABLES.get(TABLE_FORMATS.get(ending, ""), {})
+
+
+def _unreadable(source: Source, error: InputError) -> TablePreview:
+    """Return a preview of a table that cannot be read, such as a sheet of notes: its only issue states why."""
+    issue = ImportIssue(
+        source.name, error.row or 0, error.column or "", error.value or "", "error", error.reason, error.remedy
+    )
+    return replace(_fixed(source, ""), kinds={}, confidence=0.0, issues=(issue,))
 
 
 def _fixed(source: Source, kind: str, read: int = 0) -> TablePreview:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
@@ -24,13 +25,18 @@ from geofit.io.source import Source, as_source
 from geofit.io.tables import Table, parse_numbers
 from geofit.io.units import ANGLES, DEGREES, LENGTHS, METRES, angle_factors, length_factors, with_unit
 
-__all__ = ["NO_DATA", "Rows", "read_rows"]
+__all__ = ["NO_DATA", "Rows", "is_blank", "name_key", "read_rows"]
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 #: Elevations that programs write where there is none.
 NO_DATA = (-9999.0, -99999.0, -999.25, -999999.0, 1e30, 1e31, 1.70141e38)
+#: What people write where there is no number, without case.
+_NO_NUMBER = frozenset({
+    "-", "--", "–", "—", "/", "?", "n/a", "n.a.", "na", "nan", "n.d.", "nd", "nil", "none", "null", "unknown",
+    "k.a.", "unbekannt", "s.o.", "无", "不详",
+})  # fmt: skip
 
 
 class Rows:
@@ -75,7 +81,8 @@ class Rows:
     def numbers(self, role: str, *, required: bool = True, no_data: bool = False) -> Floats:
         """Return the numbers of a role; rows without a finite one are rejected, or nan where one is optional.
 
-        With ``no_data`` the usual marks for "no value" are rejected too.
+        A mark such as "n/a" is an empty cell where the number is optional. With ``no_data`` so are the usual numbers
+        for "no value"; where one is required, they are rejected.
         """
         if role not in self.columns:
             return np.full(len(self), np.nan)
@@ -94,11 +101,13 @@ class Rows:
         for i in bad.tolist():
             if (number := self._with_unit(role, cells[i])) is not None:
                 values[i] = number
-            elif cells[i].strip():
-                self.reject(i, role, wrong, remedy)
-            elif required:
+            elif required and not cells[i].strip():
                 self.reject(i, role, empty, message("io.complete-the-cell", "Complete the cell."))
-        if no_data:
+            elif required or not is_blank(cells[i]):
+                self.reject(i, role, wrong, remedy)
+        if no_data and not required:
+            values[np.isin(values, NO_DATA)] = np.nan
+        elif no_data:
             unknown = message("io.cell-marks-no-data", "The {role} is a mark for 'no data'", role=role)
             for i in np.flatnonzero(np.isin(values, NO_DATA)).tolist():
                 self.reject(
@@ -159,37 +168,23 @@ class Rows:
     def require_known(self, role: str, names: Sequence[str], known: Iterable[str], where: str) -> list[str]:
         """Return the names as they are known, and reject the rows whose hole, adit or horizon is not.
 
-        A name that differs from one known name only in its case is that one, with a note; ``where`` states what
-        should name it.
+        A name that differs from one known name only in case, leading zeros, blanks or hyphens is that one, and is
+        listed; ``where`` states what should name it.
         """
         present = list(known)
         lookup, hints = set(present), dict[str, Message]()
         if lookup.issuperset(names):
             return list(names)
-        same: dict[str, list[str]] = {}
-        for name in lookup:
-            same.setdefault(name.casefold(), []).append(name)
-        meant = {name: found[0] for name in set(names) - lookup if len(found := same.get(name.casefold(), [])) == 1}
-        if meant:
-            self.journal.add(
-                "note",
-                self.file,
-                message(
-                    "io.names-matched-by-case",
-                    "Names that differ only in case from those of the {where} are taken as these: {names}",
-                    where=where,
-                    names=", ".join(f"{name} = {meant[name]}" for name in sorted(meant)[:40]),
-                ),
-                message("io.rename-other-horizon", "If they are two, rename one."),
-                column=self.table.header[self.columns[role]],
-            )
-            names = [meant.get(name, name) for name in names]
+        # The hole of a row that was refused is not another one.
+        refused = {name_key(name): place for name, place in self.journal.refused.items()}
+        meant = _meant({name for name in set(names) - lookup if name_key(name) not in refused}, lookup)
+        self._list_meant(role, where, meant)
+        names = [meant.get(name, name) for name in names]
         for i in np.flatnonzero(self.ok).tolist():
             name = names[i]
             if name in lookup:
                 continue
-            if name in self.journal.refused:
-                place = self.journal.refused[name]
+            if name not in hints and (place := refused.get(name_key(name))):
                 hints[name] = message(
                     "io.referred-row-not-used", "Its own row was not used ({place}): correct that first.", place=place
                 )
@@ -213,6 +208,32 @@ class Rows:
                 hints[name],
             )
         return list(names)
+
+    def _list_meant(self, role: str, where: str, meant: Mapping[str, str]) -> None:
+        """List names that are taken as known ones: a difference in case is small, another may be of two holes."""
+        pairs = {name: f"{name} = {meant[name]}" for name in sorted(meant)}
+        case = [name for name in pairs if name.casefold() == meant[name].casefold()]
+        marks = [name for name in pairs if name not in case]
+        remedy = message("io.rename-other-horizon", "If they are two, rename one.")
+        column = self.table.header[self.columns[role]]
+        if case:
+            reason = message(
+                "io.names-matched-by-case",
+                "Names that differ only in case from those of the {where} are taken as these: {names}",
+                where=where,
+                names=", ".join(pairs[name] for name in case[:40]),
+            )
+            self.journal.add("note", self.file, reason, remedy, column=column)
+        if marks:
+            reason = message(
+                "io.names-matched-by-marks",
+                "Names ({count}) that differ only in leading zeros, blanks or hyphens from those of the {where} are "
+                "taken as these: {names}",
+                count=len(marks),
+                where=where,
+                names=", ".join(pairs[name] for name in marks[:10]),
+            )
+            self.journal.add("warning", self.file, reason, remedy, column=column)
 
     def close(self) -> None:
         """Count the rows: those of the file that are not used are listed."""
@@ -271,6 +292,40 @@ def read_rows(source: Source | str | Path, schema: Schema, journal: Journal) -> 
     if table.crs and not source.crs:
         source = replace(source, crs=table.crs)
     return Rows(table, find_columns(table, schema, source, journal), source, journal)
+
+
+def name_key(name: str) -> tuple[str, ...]:
+    """Return what is the same for names that differ only in case, leading zeros, blanks, hyphens and underscores.
+
+    Marks between two numbers separate them all the same. A program may have written the name 7 as the number 7.0.
+
+    Examples
+    --------
+    >>> [name_key(name) for name in ("ZK-007", "zk 7", "7.0", "BH1-1", "BH11", "BH7*")]
+    [('zk', '7'), ('zk', '7'), ('7',), ('bh', '1', '1'), ('bh', '11'), ('bh', '7', '*')]
+    """
+    whole = re.sub(r"^(\d+)\.0+$", r"\1", name.casefold())
+    parts: list[str] = re.findall(r"[^\W\d_]+|\d+|[^\w\s-]", whole)
+    return tuple((part.lstrip("0") or "0") if part.isdecimal() else part for part in parts)
+
+
+def _meant(names: set[str], known: Iterable[str]) -> dict[str, str]:
+    """Return the one known name that each name is likely to mean: but for its case, or else for its marks."""
+    meant: dict[str, str] = {}
+    for key in (str.casefold, name_key):
+        alike: dict[object, list[str]] = {}
+        for name in known:
+            alike.setdefault(key(name), []).append(name)
+        for name in names - meant.keys():
+            if len(found := alike.get(key(name), [])) == 1:
+                meant[name] = found[0]
+    return meant
+
+
+def is_blank(cell: str) -> bool:
+    """Whether a cell of numbers holds none: it is empty, or a mark such as "n/a" or "-"."""
+    text = cell.strip()
+    return not text or text.casefold() in _NO_NUMBER
 
 
 def _cleaned(cell: str) -> str:

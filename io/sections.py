@@ -106,12 +106,7 @@ def load_sections(
         xyz[own] = lift(line, distance[own], elevation[own])
         sections.append(section)
     rows.close()
-    if not rows.ok.any():
-        raise InputError(
-            message("io.no-usable-section-row", "None of the rows of the sections can be used"),
-            message("io.see-listed-rows", "See the listed rows."),
-            file=source.name,
-        )
+    rows.require_any()
     return sections, horizons.split(rows, horizon, xyz, kind="section", section=name)
 
 

@@ -6,6 +6,7 @@ import csv
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from itertools import zip_longest
 
 from geofit.data.errors import InputError
 from geofit.data.messages import message
@@ -16,11 +17,13 @@ __all__ = [
     "decimal_of_groups",
     "decode",
     "find_decimal",
+    "find_header",
     "find_separator",
     "grouped_number",
     "is_header",
     "is_number",
     "is_units_row",
+    "joined_header",
     "quoted_cells",
     "split_line",
 ]
@@ -45,17 +48,28 @@ _DECIMAL_POINT = re.compile(r"(?<![\d.,])\d*\.\d+(?:[eE][+-]?\d+)?(?![\d.,])")
 _BLANKS = re.compile(r"[+-]?[1-9]\d{0,2}([ \u00a0\u2009\u202f'’])\d{3}(?:\1\d{3})*([.,]\d*)?")
 _POINTED = r"[1-9]\d{0,2}(?:,\d{3})+\.\d+"
 _COMMAED = r"[1-9]\d{0,2}(?:\.\d{3})+,\d+"
+#: Numbers of which one mark can only be the decimal one: no group of three digits, or a mark of thousands twice.
+_SURE_COMMA = r"(?![1-9]\d{0,2},\d{3}(?!\d))\d*,\d+|[1-9]\d{0,2}(?:\.\d{3}){2,}"
+_SURE_POINT = r"(?![1-9]\d{0,2}\.\d{3}(?!\d))\d*\.\d+|[1-9]\d{0,2}(?:,\d{3}){2,}"
 _MARKS = re.compile(rf"[+-]?(?:{_POINTED}|{_COMMAED}|[1-9]\d{{0,2}}([.,])\d{{3}}(?:\1\d{{3}})+)")
 #: Letters of a text in which they are looked for.
 HEAD = 65_536
+#: Titles have at most this share of the usual cells; a header lies at most so many rows below the first of them.
+NARROW, TITLES = 0.6, 20
 _UNITS = {
     "m",
+    "km",
+    "cm",
+    "mm",
     "metre",
     "metres",
     "meter",
     "meters",
     "ft",
     "feet",
+    "usft",
+    "gon",
+    "rad",
     "deg",
     "degree",
     "degrees",
@@ -220,9 +234,20 @@ def find_decimal(text: str, sep: str) -> str:
 
 
 def decimal_of_groups(text: str) -> str:
-    """Return the decimal mark of numbers such as 1,234.5 or 1.234,5, which leave no doubt; "" without any."""
-    commas, points = (len(re.findall(rf"(?<![\d.,]){form}(?![\d.,])", text)) for form in (_COMMAED, _POINTED))
-    return "," if commas > points else "." if points > commas else ""
+    """Return the decimal mark of numbers that can be read in one way only; "" without any.
+
+    First those with both marks, then fractions and several groups of thousands: "1.234" alone may be 1234.
+
+    Examples
+    --------
+    >>> [decimal_of_groups(text) for text in ("1,234.5 2,5", "1.234 97,8", "3,101,234 501,111", "1.234")]
+    ['.', ',', '.', '']
+    """
+    for forms in ((_COMMAED, _POINTED), (_SURE_COMMA, _SURE_POINT)):
+        commas, points = (len(re.findall(rf"(?<![\d.,])(?:{form})(?![\d.,])", text)) for form in forms)
+        if commas != points:
+            return "," if commas > points else "."
+    return ""
 
 
 def is_header(first: Sequence[str], following: Sequence[Sequence[str]]) -> bool:
@@ -239,6 +264,37 @@ def is_header(first: Sequence[str], following: Sequence[Sequence[str]]) -> bool:
 
 
 def is_units_row(cells: Sequence[str]) -> bool:
-    """Whether a row under the header holds nothing but units."""
-    filled = [cell.strip().strip("[]()<>").casefold() for cell in cells if cell.strip()]
-    return bool(filled) and all(cell in _UNITS | {"-", "units"} for cell in filled)
+    """Whether a row under the header holds nothing but units, such as "m", "[ft]" or "m a.s.l."."""
+    filled = [cell.strip().strip("[]()<>").casefold().split() for cell in cells if cell.strip()]
+    return bool(filled) and all(words and words[0] in _UNITS | {"-", "units"} for words in filled)
+
+
+def find_header(rows: Sequence[Sequence[str]]) -> tuple[int, int]:
+    """Return the first and the last row of the header among the filled rows of a table; those above it are titles.
+
+    Titles have one cell, or far fewer than a row of names below them. Under merged cells a header has two rows, of
+    which the lower one fills the gaps of the upper.
+    """
+    filled = [sum(map(bool, map(str.strip, row))) for row in rows]
+    least = NARROW * Counter(filled).most_common(1)[0][0] if rows else 0.0
+    names = [not any(map(is_number, row)) and not is_units_row(row) for row in rows]
+    for k in range(len(rows) - 1):
+        if k + 2 < len(rows) and names[k] and names[k + 1] and not names[k + 2] and _complete(rows[k], rows[k + 1]):
+            return k, k + 1
+        title = filled[k] == 1 and sum(width > 1 for width in filled[k:]) > len(filled[k:]) // 2
+        below = range(k + 1, min(k + TITLES, len(rows) - 1))
+        if not title and not (filled[k] <= least and any(names[j] and filled[j] > least for j in below)):
+            return k, k
+    return len(rows) - 1, len(rows) - 1
+
+
+def _complete(upper: Sequence[str], lower: Sequence[str]) -> bool:
+    """Whether the lower of two rows fills gaps of the upper one: between its cells, or where each has some alone."""
+    pairs = [(bool(up.strip()), bool(low.strip())) for up, low in zip_longest(upper, lower, fillvalue="")]
+    end = max((j for j, (up, _) in enumerate(pairs) if up), default=0)
+    return (False, True) in (pairs if (True, False) in pairs else pairs[:end])
+
+
+def joined_header(upper: Sequence[str], lower: Sequence[str]) -> list[str]:
+    """Return the names of a header of two rows: the lower one's, where it has one."""
+    return [low.strip() or up.strip() for up, low in zip_longest(upper, lower, fillvalue="")]

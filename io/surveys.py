@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -17,12 +17,17 @@ from geofit.io.journal import Journal
 from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source
 
-__all__ = ["Stations", "read_stations"]
+__all__ = ["Collar", "Stations", "read_stations"]
 
 Floats = NDArray[np.float64]
 
-#: A hole that turns by more between two stations has a wrong sign or a wrong row, degrees.
-SHARPEST_TURN = 90.0
+#: A hole that turns by more between two stations has a wrong sign or a wrong row, degrees; one that turns by more than
+#: the second number is doubtful.
+SHARPEST_TURN, SHARP_TURN = 90.0, 30.0
+#: Holes of which none is steeper, degrees: their dips may be from the vertical.
+FLAT = 45.0
+#: Stations are measured a little below the end of the log, metres.
+BELOW_END = 0.5
 #: The azimuth of a steeper hole does not matter, degrees.
 VERTICAL = 89.99
 
@@ -92,6 +97,7 @@ class Stations:
             )
         azimuth = azimuth + declination
         dip = _downwards(rows, dip, sign)
+        _warn_of_flat(rows, name, dip)
         chosen = rows.ok & np.isfinite(dip)
         result: dict[str, Stations] = {}
         order = np.lexsort((np.arange(len(name)), depth, np.array(name)))
@@ -103,10 +109,19 @@ class Stations:
         return result
 
 
+@dataclass(frozen=True)
+class Collar:
+    """The mouth of a hole, its end (depth in metres, nan where that is not known), its attitude where that is known."""
+
+    xyz: tuple[float, float, float]
+    end: float
+    stations: Stations | None
+
+
 def read_stations(
     source: Source,
     sign: Literal["down-positive", "down-negative"] | None,
-    holes: Sequence[str],
+    collars: Mapping[str, Collar],
     journal: Journal,
     declination: float = 0.0,
 ) -> dict[str, Stations]:
@@ -114,18 +129,18 @@ def read_stations(
 
     ``declination`` (degrees, east positive) is added to the azimuths, which are grid azimuths without one.
 
-    A hole whose first station lies below 0 goes straight to it, a hole with one station is straight: each is
-    listed as a warning.
+    The attitude of the collar table is the station at 0 where the survey has none. Without one, a hole goes straight to
+    its first station, and a hole with one station is straight: each is listed as a warning, vertical ones in one note.
     """
     rows = read_rows(source, SURVEY, journal)
     name, depth = rows.text("hole"), rows.numbers("depth")
-    name = rows.require_known("hole", name, holes, "collar table")
+    name = rows.require_known("hole", name, collars, "collar table")
     for i in np.flatnonzero((depth < 0) & rows.ok).tolist():
         rows.reject(
             i,
             "depth",
             message("io.station-above-collar", "The station lies above the collar"),
-            message("io.depths-count-down", "Depths count from the collar, downwards."),
+            message("io.depths-positive-down", "Depths are positive and count from the collar, downwards."),
         )
     stations = Stations.from_rows(rows, name, depth, sign, declination=declination)
     if not declination and any(np.abs(station.dip).min() < VERTICAL for station in stations.values()):
@@ -139,10 +154,13 @@ def read_stations(
             ),
             column=rows.table.header[rows.columns["azimuth"]],
         )
+    _start_at_collar(rows, stations, collars)
+    _warn_beyond_end(rows, name, depth, collars)
     first: dict[str, int] = {}
     for i in np.flatnonzero(rows.ok).tolist():
         if name[i] not in first or depth[i] < depth[first[name[i]]]:
             first[name[i]] = i
+    upright: list[str] = []
     for hole, i in first.items():
         if stations[hole].depth[0] > 0:
             rows.warn(
@@ -155,15 +173,29 @@ def read_stations(
                 ),
                 message("io.add-attitude-collar", "Add the attitude at the collar."),
             )
-        if len(stations[hole].depth) == 1:
+        if len(stations[hole].depth) == 1 and stations[hole].dip[0] > VERTICAL:
+            upright.append(hole)
+        elif len(stations[hole].depth) == 1:
             rows.warn(
                 i,
                 "depth",
                 message("io.hole-of-one-station", "Hole {hole} has one station only; it is straight", hole=hole),
                 message("io.add-known-stations", "Add its other stations, if there are any."),
             )
-    for hole in holes:
-        if hole not in stations:
+    if upright:
+        journal.add(
+            "note",
+            rows.file,
+            message(
+                "io.holes-of-one-vertical-station",
+                "Holes with one station only, which is vertical: {count}: {names}",
+                count=len(upright),
+                names=", ".join(upright),
+            ),
+            message("io.add-known-stations", "Add its other stations, if there are any."),
+        )
+    for hole, mouth in collars.items():
+        if hole not in stations and mouth.stations is None:
             journal.add(
                 "warning",
                 rows.file,
@@ -173,6 +205,58 @@ def read_stations(
             )
     rows.close()
     return stations
+
+
+def _start_at_collar(rows: Rows, stations: dict[str, Stations], collars: Mapping[str, Collar]) -> None:
+    """Begin holes without a station at depth 0 with the attitude of the collar table, if the two agree roughly."""
+    begun = 0
+    for hole, own in stations.items():
+        mouth = collars[hole].stations
+        if mouth is None or own.depth[0] <= 0:
+            continue
+        together = Stations(np.r_[0.0, own.depth], np.r_[mouth.azimuth[:1], own.azimuth], np.r_[mouth.dip[:1], own.dip])
+        if _turn(together.azimuth[:2], together.dip[:2]) <= SHARPEST_TURN:
+            stations[hole], begun = together, begun + 1
+    if begun:
+        rows.journal.add(
+            "note",
+            rows.file,
+            message(
+                "io.attitudes-from-collars",
+                "Holes without a station at depth 0 begin with the azimuth and dip of the collar table: {count}",
+                count=begun,
+            ),
+        )
+
+
+def _warn_beyond_end(rows: Rows, name: list[str], depth: Floats, collars: Mapping[str, Collar]) -> None:
+    """Warn of the first station of each hole that lies below its end: one of the two is wrong."""
+    warned: set[str] = set()
+    for i in np.flatnonzero(rows.ok).tolist():
+        end = collars[name[i]].end
+        if depth[i] > end + BELOW_END and name[i] not in warned:
+            warned.add(name[i])
+            rows.warn(
+                i,
+                "depth",
+                message(
+                    "io.station-beyond-hole",
+                    "The station lies {distance:.1f} m below the end of hole {hole} at {end:g} m",
+                    distance=depth[i] - end,
+                    hole=name[i],
+                    end=end,
+                ),
+                message(
+                    "io.correct-station-or-hole",
+                    "Correct the depth of the station or of the hole; check that both have the same unit.",
+                ),
+            )
+
+
+def _turn(azimuth: Floats, dip: Floats) -> float:
+    """Return the angle between two attitudes, degrees."""
+    tangent = minimum_curvature(np.zeros(3), np.array([0.0, 1.0]), azimuth, dip).tangent
+    return float(np.degrees(np.arccos(np.clip(tangent[0] @ tangent[1], -1.0, 1.0))))
 
 
 def _downwards(rows: Rows, dip: Floats, sign: Literal["down-positive", "down-negative"] | None) -> Floats:
@@ -217,6 +301,24 @@ def _downwards(rows: Rows, dip: Floats, sign: Literal["down-positive", "down-neg
     return -dip if down == "down-negative" else dip
 
 
+def _warn_of_flat(rows: Rows, name: list[str], dip: Floats) -> None:
+    """Warn of dips that are all flat: in some tables 0 is the vertical."""
+    used = np.flatnonzero(rows.ok & np.isfinite(dip))
+    if len({name[i] for i in used.tolist()}) < 3 or np.abs(dip[used]).max() > FLAT:
+        return
+    rows.journal.add(
+        "warning",
+        rows.file,
+        message(
+            "io.dips-like-from-vertical",
+            "No dip is steeper than {steepest:g} degrees from the horizontal: the angles may be from the vertical",
+            steepest=float(np.abs(dip[used]).max()),
+        ),
+        message("io.give-angle-from-horizontal", "Give the angle from horizontal."),
+        column=rows.table.header[rows.columns["dip"]],
+    )
+
+
 def _sound(rows: Rows, group: NDArray[np.int64], depth: Floats, azimuth: Floats, dip: Floats) -> NDArray[np.int64]:
     """Return the stations of one hole without repeated depths and impossible turns, which are listed."""
     kept: list[int] = []
@@ -235,20 +337,18 @@ def _sound(rows: Rows, group: NDArray[np.int64], depth: Floats, azimuth: Floats,
             continue
         if kept:
             pair = [kept[-1], i]
-            path = minimum_curvature(np.zeros(3), np.array([0.0, 1.0]), azimuth[pair], dip[pair])
-            turn = float(np.degrees(np.arccos(np.clip(path.tangent[0] @ path.tangent[1], -1.0, 1.0))))
-            if turn > SHARPEST_TURN:
-                rows.reject(
-                    i,
-                    "dip",
-                    message(
-                        "io.hole-turns-sharply",
-                        "The hole turns by {turn:.0f} degrees since row {row}",
-                        turn=turn,
-                        row=rows.line[kept[-1]],
-                    ),
-                    message("io.check-dip-and-azimuth", "Check the sign of the dip and the azimuth."),
+            turn = _turn(azimuth[pair], dip[pair])
+            if turn > SHARP_TURN:
+                reason = message(
+                    "io.hole-turns-sharply",
+                    "The hole turns by {turn:.0f} degrees since row {row}",
+                    turn=turn,
+                    row=rows.line[kept[-1]],
                 )
-                continue
+                remedy = message("io.check-dip-and-azimuth", "Check the sign of the dip and the azimuth.")
+                if turn > SHARPEST_TURN:
+                    rows.reject(i, "dip", reason, remedy)
+                    continue
+                rows.warn(i, "dip", reason, remedy)
         kept.append(i)
     return np.array(kept, dtype=np.int64)

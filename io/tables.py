@@ -17,16 +17,28 @@ from geofit.io.not_tables import require_table
 from geofit.io.sniff import (
     decode,
     find_decimal,
+    find_header,
     find_separator,
     grouped_number,
     is_header,
     is_units_row,
+    joined_header,
     quoted_cells,
     split_line,
 )
 from geofit.io.source import Source
 
-__all__ = ["MOST_COLUMNS", "Table", "first_names", "parse_numbers", "read_table", "require_width", "unique_names"]
+__all__ = [
+    "MOST_COLUMNS",
+    "Table",
+    "first_names",
+    "list_second_header",
+    "list_title",
+    "parse_numbers",
+    "read_table",
+    "require_width",
+    "unique_names",
+]
 
 Floats = NDArray[np.float64]
 
@@ -92,8 +104,9 @@ def read_table(source: Source, journal: Journal) -> Table:
     decimal = source.decimal or (
         lines.decimal(sep) if isinstance(lines, BigText) else find_decimal("\n".join(lines), sep)
     )
-    start = _skip_titles(lines, start, sep, source.name, journal)
+    start, upper = _skip_titles(lines, start, sep, source.name, journal)
     first, taken = _quoted(lines, start, sep)
+    first = joined_header(upper, first) if upper else first
     below = [line for line in lines[start + taken : start + 4 * _SAMPLE] if line.strip(sep + " \t")][:_SAMPLE]
     named = is_header(first, [split_line(line, sep) for line in below])
     width = len(first)
@@ -174,24 +187,37 @@ def _skip_comments(lines: Sequence[str], name: str, journal: Journal) -> int:
     return start
 
 
-def _skip_titles(lines: Sequence[str], start: int, sep: str, name: str, journal: Journal) -> int:
-    """Return the index of the first line with as many cells as a table has: titles above it have one."""
+def _skip_titles(lines: Sequence[str], start: int, sep: str, name: str, journal: Journal) -> tuple[int, list[str]]:
+    """Return the index of the header's last line below any titles, and the names of a line above that belongs to it."""
     marks = sep + " \t"
     filled = [i for i in range(start, min(start + _SAMPLE, len(lines))) if lines[i].strip(marks)]
-    widths = [sum(bool(cell.strip()) for cell in split_line(lines[i], sep)) for i in filled]
-    k = 0
-    while (
-        k + 1 < len(filled) and widths[k] == 1 and sep != " " and sum(w > 1 for w in widths[k:]) > len(widths[k:]) // 2
-    ):
-        journal.add(
-            "note",
-            name,
-            message("io.title-line", "A title above the header is not read"),
-            row=filled[k] + 1,
-            value=lines[filled[k]],
-        )
-        k += 1
-    return filled[k] if filled else start
+    if sep == " " or not filled:
+        return (filled[0] if filled else start), []
+    rows = [split_line(lines[i], sep) for i in filled]
+    first, last = find_header(rows)
+    for i in filled[:first]:
+        list_title(name, i + 1, lines[i], journal)
+    if last > first:
+        list_second_header(name, filled[last] + 1, lines[filled[last]], journal)
+    return filled[last], rows[first] if last > first else []
+
+
+def list_title(name: str, row: int, value: str, journal: Journal) -> None:
+    """List a row above the header."""
+    journal.add(
+        "note", name, message("io.title-line", "A title above the header is not read"), row=row, value=value.strip()
+    )
+
+
+def list_second_header(name: str, row: int, value: str, journal: Journal) -> None:
+    """List the second row of a header."""
+    journal.add(
+        "note",
+        name,
+        message("io.header-of-two-rows", "The header has two rows; where both name a column, this one counts"),
+        row=row,
+        value=value.strip(),
+    )
 
 
 def _columns(

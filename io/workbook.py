@@ -16,9 +16,9 @@ from geofit.data.messages import message
 from geofit.io.cells import number_text, table_of
 from geofit.io.extra import need
 from geofit.io.journal import Journal
-from geofit.io.sniff import is_header, is_units_row
+from geofit.io.sniff import find_header, is_header, is_units_row, joined_header
 from geofit.io.source import Source
-from geofit.io.tables import Table
+from geofit.io.tables import Table, list_second_header, list_title
 
 __all__ = ["read_sheet", "sheet_names"]
 
@@ -55,16 +55,13 @@ def read_sheet(source: Source, journal: Journal) -> Table:
             message("data.name-one", "Name one of them."),
             file=source.name,
         )
-    while len(rows) > 1 and sum(map(bool, rows[0][1])) == 1 and sum(map(bool, rows[1][1])) > 1:
-        line, cells = rows.pop(0)
-        journal.add(
-            "note",
-            source.name,
-            message("io.title-line", "A title above the header is not read"),
-            row=line,
-            value=" ".join(cells).strip(),
-        )
-    first = rows[0][1]
+    top, last = find_header([cells for _, cells in rows[:_SAMPLE]])
+    for line, cells in rows[:top]:
+        list_title(source.name, line, " ".join(cells), journal)
+    upper, first, rows = rows[top][1], rows[last][1], rows[last:]
+    if last > top:
+        list_second_header(source.name, rows[0][0], " ".join(first), journal)
+        first = joined_header(upper, first)
     width = max(j + 1 for j, cell in enumerate(first) if cell)
     named = is_header(first[:width], [cells for _, cells in rows[1:_SAMPLE]])
     header = first[:width] if named else [f"column {j + 1}" for j in range(width)]

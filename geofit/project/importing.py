@@ -21,7 +21,7 @@ from geofit.data.site import Ground, ImportIssue, Site, TableCount
 from geofit.io.added_tables import tables_text
 from geofit.io.boreholes import load_boreholes
 from geofit.io.columns import SCHEMAS
-from geofit.io.contact_rules import ContactRule
+from geofit.io.contact_rules import ContactRule, code_key
 from geofit.io.contacts import load_rule
 from geofit.io.grid import load_ground
 from geofit.io.guess import taken_as, warn_of_depths
@@ -298,11 +298,11 @@ def _limits(plan: ImportPlan, base: Sequence[str], top: Sequence[str]) -> list[d
 
 
 def _spellings(logs: Sequence[IntervalLog], plan: ImportPlan) -> list[tuple[str, ...]]:
-    """Return the codes of logs, those that differ in case only together, the commonest first; the plan lists these."""
+    """Return the codes of logs, those of one :func:`code_key` together, the commonest first; the plan lists these."""
     counts = Counter(str(code) for log in logs for code in log.code)
     alike: dict[str, list[str]] = {}
     for code in counts:
-        alike.setdefault(code.casefold(), []).append(code)
+        alike.setdefault(code_key(code), []).append(code)
     groups = [tuple(sorted(codes, key=lambda code: (-counts[code], code))) for codes in alike.values()]
     for codes in (codes for codes in groups if len(codes) > 1):
         issue = ImportIssue(
@@ -313,7 +313,7 @@ def _spellings(logs: Sequence[IntervalLog], plan: ImportPlan) -> list[tuple[str,
             "warning",
             message(
                 "project.codes-differ-in-case",
-                "Codes that differ in case only count as one bed: {names}",
+                "Codes that differ in case or marks only count as one bed: {names}",
                 names=", ".join(f"{code} ({counts[code]})" for code in codes),
             ),
             message("project.split-codes-in-site-file", "If they are two horizons, give each its own [[horizon]]."),
@@ -346,7 +346,9 @@ def _read(tables: Tables, plan: ImportPlan, site_file: Path) -> Site:
             top.setdefault(head.strip("[]"), []).append(table)
         else:
             top[head.strip("[]")] = table
-    return build_site(top, site_file, Journal(), mappings=[part.mapping for part in _parts(plan)])
+    journal = Journal()
+    with journal.handed_over():
+        return build_site(top, site_file, journal, mappings=[part.mapping for part in _parts(plan)])
 
 
 def _write(tables: Tables, plan: ImportPlan, site_file: Path, mapping_file: Path) -> None:

@@ -97,7 +97,7 @@ BROKEN_FILES = {
     "header only": ("collar", "hole,x,y,z\n", ["collar.csv", "no rows"]),
     "missing column": ("collar", "hole,x,z\nB1,1,2\n", ["collar.csv", "'y'", "hole, x, z"]),
     "missing file": ("collar", None, ["collar.csv", "no such file"]),
-    "no usable collar": ("collar", "hole,x,y,z\nB1,a,2,3\n", ["collar.csv", "No row"]),
+    "no usable collar": ("collar", "hole,x,y,z\nB1,a,2,3\n", ["collar.csv", "None of the rows", "row 2"]),
     "longitude": ("collar", "hole,lon,lat,z\nB1,103.1,28.2,3\n", ["collar.csv", "Longitude", "Project"]),
     "workbook": ("collar", b"PK\x03\x04\x00\x00", ["collar.csv", "workbook"]),
     "binary": ("collar", bytes(range(256)) * 4, ["collar.csv", "not text"]),
