@@ -24,7 +24,7 @@ from geofit.io.export.write import FORMATS
 from geofit.project.document import Document
 from geofit.project.export_task import export_surfaces
 from geofit.project.interventions import interventions_of
-from geofit.project.staleness import stale_causes
+from geofit.project.staleness import dated_body, stale_causes
 from geofit.report.result import HorizonResult
 
 __all__ = ["Delivering"]
@@ -137,7 +137,11 @@ class Delivering(QObject):
         if surfaces:
             site, provenances = self._document.site_in_use(), dict(self._document.state.provenances)
             results = [self.result(name, surface) for name, surface in surfaces.items()]
-            bodies = {name: body for name, body in self._document.made_bodies().items() if body.fitted is not None}
+            bodies = {
+                name: body
+                for name in self._document.state.bodies
+                if (body := dated_body(self._document, name)) is not None and body.fitted is not None
+            }
             dialog = ReportDialog(site, results, self._window, self._document.blocks(), self._folder(), bodies)
             dialog.written.connect(self.list_report)
             dialog.examined.connect(

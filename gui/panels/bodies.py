@@ -40,7 +40,10 @@ FIRST = ("epsilon", "step", "closed", "reach")
 
 
 class BodyShown:
-    """What the panel shows of one body: what it is made from, its verdict, and what is to be said of it."""
+    """What the panel shows of one body: what it is made from, its verdict, and what is to be said of it.
+
+    ``old`` is why it is to be fitted again, empty if it is not; ``origin`` how it came here.
+    """
 
     def __init__(
         self,
@@ -49,11 +52,11 @@ class BodyShown:
         verdict: Verdict | None = None,
         *,
         waiting: bool = False,
-        stale: bool = False,
+        old: str = "",
         origin: str = "",
     ) -> None:
         self.provenance, self.accuracy, self.verdict = provenance, accuracy, verdict
-        self.waiting, self.stale, self.origin = waiting, stale, origin
+        self.waiting, self.old, self.origin = waiting, old, origin
 
 
 class BodiesPanel(QWidget):
@@ -152,7 +155,7 @@ class BodiesPanel(QWidget):
         judged = shown is None or isinstance(shown.provenance.source, FITTED)
         self.badge.setVisible(shown is not None and judged)
         if shown is not None:
-            self.badge.show_accuracy(accuracy, shown.stale, shown.verdict, shown.waiting)
+            self.badge.show_accuracy(accuracy, bool(shown.old), shown.verdict, shown.waiting)
         self.form.setVisible(judged and not isinstance(self.source.source(), ClosedMesh | BetweenHorizons | MorphFrame))
         self.origin.setText("" if shown is None else shown.origin)
         self.origin.setVisible(bool(self.origin.text()))
@@ -251,9 +254,9 @@ class BodiesPanel(QWidget):
             if self._shown is None and source is None
             else self.tr("Not fitted with these settings yet: press Fit.")
             if changed
-            else self.tr("The data have changed since this body was made: press Fit.")
-            if self._shown is not None and self._shown.stale
             else ""
+            if self._shown is None
+            else self._shown.old
         )
 
     def _waiting(self) -> bool:
