@@ -112,7 +112,10 @@ class Delivering(QObject):
         surfaces = self._document.surfaces()
         bodies = sheet_bodies(self._document)
         thickness, uncertain = self._showing.thickness, self._showing.uncertainties()
-        dialog = SectionSheetDialog(site, surfaces, line, thickness, uncertain, bodies, self._folder(), self._window)
+        stale = [name for name in surfaces if self._document.stale(name)]
+        dialog = SectionSheetDialog(
+            site, surfaces, line, thickness, uncertain, bodies, self._folder(), self._window, stale
+        )
         dialog.exec()
         if dialog.files:
             self._written(list(dialog.files))
@@ -124,7 +127,8 @@ class Delivering(QObject):
         surfaces = self._surfaces()
         if surfaces:
             chosen = self._document.selection.horizon
-            dialog = PlanSheetDialog(self._document.site_in_use(), surfaces, chosen, self._folder(), self._window)
+            site, stale = self._document.site_in_use(), {name: stale_causes(self._document, name) for name in surfaces}
+            dialog = PlanSheetDialog(site, surfaces, chosen, self._folder(), self._window, stale)
             dialog.exec()
             if dialog.files:
                 self._written(list(dialog.files))

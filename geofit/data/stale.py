@@ -50,7 +50,7 @@ class StaleCause:
                 return message("data.stale-horizon", "Surface of horizon {name}", name=Untranslated(self.name))
 
 
-def stale_warning(names: Iterable[str]) -> Message:
+def stale_warning(names: Iterable[str | Message]) -> Message:
     """Return the warning of everything that shows a verdict on what is stale, and what to do about it."""
     return message(
         "data.stale-surfaces",

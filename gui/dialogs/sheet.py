@@ -24,10 +24,11 @@ from PySide6.QtWidgets import (
 
 from geofit.data.errors import GeofitError
 from geofit.data.site import Site
+from geofit.data.stale import stale_warning
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.lengths import coordinate_unit, length_mark, length_unit, metres_shown, shown_length
 from geofit.gui.save_file import ask_save_file
-from geofit.gui.translate import failure
+from geofit.gui.translate import failure, translated
 from geofit.project.section_sheet import SheetForm
 from geofit.report.paper import PAPERS, SheetTitle, drawing_scale, scales_of
 
@@ -40,8 +41,8 @@ Row = tuple[str, QWidget]
 class SheetDialog(TaskDialog):
     """Asks for a drawing and writes it in a process of its own; ``files`` holds what was written last."""
 
-    #: What is said while the drawing is made.
-    drawing = ""
+    #: What is said before the drawing is made, and while it is.
+    hint = drawing = ""
 
     def __init__(self, site: Site, title: str, target: Path, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -67,6 +68,14 @@ class SheetDialog(TaskDialog):
     @abstractmethod
     def work(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
         """Return what writes the drawing, with its arguments; GeofitError where a number does not fit."""
+
+    @abstractmethod
+    def stale(self) -> list[str]:
+        """Return the names of what is drawn and is older than its data."""
+
+    def show_hint(self) -> None:
+        """Say what will be drawn."""
+        self._tell(self.hint)
 
     def title_block(self) -> SheetTitle:
         """Return what the title block says."""
@@ -155,7 +164,12 @@ class SheetDialog(TaskDialog):
     def _written(self, made: tuple[int, tuple[Path, ...]]) -> None:
         scale, self.files = made
         names = ", ".join(str(file.resolve()) for file in self.files)
-        self.say(self.tr("Wrote {names} at 1:{scale}.").format(names=names, scale=scale), "passed")
+        self._tell(self.tr("Wrote {names} at 1:{scale}.").format(names=names, scale=scale), "passed")
+
+    def _tell(self, text: str, mark: str = "none") -> None:
+        """Say something, and what is older than its data."""
+        old = self.stale()
+        self.say(f"{text}\n{translated(stale_warning(old))}" if old else text, "stale" if old else mark)
 
 
 class LengthField(QDoubleSpinBox):
