@@ -24,7 +24,7 @@ from geofit.gui.dialogs.step_fields import BodyStepDialog
 from geofit.gui.fitting import Fitting
 from geofit.gui.panels.body_source import MESH, OTHER, OUTLINES, POINTS
 from geofit.gui.preferences import Preferences
-from geofit.gui.save_file import ask_save_file
+from geofit.gui.save_file import ask_save_file, may_replace
 from geofit.gui.session import Session
 from geofit.gui.showing import Showing
 from geofit.gui.source_watch import SourceWatch
@@ -48,7 +48,7 @@ from geofit.project.body_sources import outline_layers, site_codes
 from geofit.project.horizon_body import needed_horizons
 from geofit.project.provenance import Provenance
 from geofit.project.staleness import dated_body
-from geofit.project.step_files import Signed
+from geofit.project.step_files import Signed, certificate_of
 from geofit.report.digits import volume
 
 __all__ = ["Bodies"]
@@ -132,7 +132,10 @@ class Bodies(QObject):
                 return
             dialog = BodyStepDialog(name, self._document.site, self._window, stale=bool(result.stale))
             if dialog.exec():
-                self.export(name, target, dialog.fields.signed())
+                signed = dialog.fields.signed()
+                pages = [certificate_of(target)] if signed.certificate else []
+                if may_replace(pages, title, self._window):
+                    self.export(name, target, signed)
 
     def export(self, name: str, target: Path, signed: Signed | None = None) -> None:
         """Write a body in the format of a file's ending; ``signed`` is what a STEP file states."""

@@ -9,7 +9,7 @@ Templates are literals, so that Babel can extract them: ``pybabel extract -k mes
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from gettext import NullTranslations
@@ -30,6 +30,7 @@ __all__ = [
     "message",
     "plural_message",
     "render",
+    "some_of",
 ]
 
 Severity = Literal["info", "warning", "error"]
@@ -130,6 +131,22 @@ def plural_message(code: str, singular: str, plural: str, /, *, count: int, **pa
     ['1 point', '2 points']
     """
     return Message(code, singular, {"count": count, **_kept(params)}, plural)
+
+
+def some_of(names: Sequence[str], most: int) -> tuple[str | Message, ...]:
+    """Return names for a sentence: the first ``most``, and how many more there are.
+
+    Examples
+    --------
+    >>> str(message("data.listed", "{names}", names=some_of(["T1", "T2", "T3", "T4"], 2)))
+    'T1, T2 and 2 more'
+    """
+    if len(names) <= most:
+        return tuple(names)
+    more = message(
+        "data.names-and-more", "{names} and {count} more", names=tuple(names[:most]), count=len(names) - most
+    )
+    return (more,)
 
 
 def gravest_first(messages: Iterable[Message]) -> tuple[Message, ...]:

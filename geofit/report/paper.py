@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from geofit.data.files import file_stems, replacing
 from geofit.data.languages import Language, translate
 from geofit.data.lengths import LENGTH_UNITS, LengthUnit
-from geofit.data.messages import Message, message
+from geofit.data.messages import some_of
 from geofit.data.stale import stale_warning
 from geofit.report.style import MUTED, TEXT, WARNING, drawing, shortened, text_width
 
@@ -29,6 +29,7 @@ __all__ = [
     "save_pdf",
     "save_svg",
     "scales_of",
+    "svg_files",
 ]
 
 #: Paper in landscape, millimetres.
@@ -137,11 +138,7 @@ def _stale_line(names: Sequence[str], room: float, t: Language) -> str:
     """Return the warning of what is older than its data, with as many names as fit on a line (mm)."""
     short, text = [shortened(name) for name in names], ""
     for most in range(len(short), 0, -1):
-        named: list[str | Message] = [*short[:most]]
-        if most < len(short):
-            rest = len(short) - most
-            named = [message("report.names-and-more", "{names} and {count} more", names=tuple(named), count=rest)]
-        text = translate(stale_warning(named), t)
+        text = translate(stale_warning(some_of(short, most)), t)
         if text_width(text, _STALE_SIZE) <= room:
             break
     return text
@@ -164,13 +161,18 @@ def save_svg(
     """Write pages as SVG, one file each; several get their names. Return the files."""
     import matplotlib as mpl
 
-    path, files = Path(path), []
-    stems = file_stems([name or str(k) for k, name in enumerate(names, 1)])
+    files = svg_files(names, Path(path))
     with drawing(8.0), mpl.rc_context({**_THIN, "svg.hashsalt": "geofit", "svg.fonttype": "path"}):
-        for page, stem in zip(pages, stems.values(), strict=True):
-            file = path if len(names) == 1 else path.with_name(f"{path.stem}_{stem}{path.suffix}")
+        for page, file in zip(pages, files, strict=True):
             figure = page()
             with replacing(file) as part:
                 figure.savefig(part, format="svg", metadata={"Date": None})
-            files.append(file)
-    return tuple(files)
+    return files
+
+
+def svg_files(names: Sequence[str], path: Path) -> tuple[Path, ...]:
+    """Return the files that :func:`save_svg` writes."""
+    if len(names) == 1:
+        return (path,)
+    stems = file_stems([name or str(k) for k, name in enumerate(names, 1)])
+    return tuple(path.with_name(f"{path.stem}_{stem}{path.suffix}") for stem in stems.values())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -71,6 +71,11 @@ class PlanSheetDialog(SheetDialog):
     def work(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
         """Return what writes the plans."""
         return write_plan_sheet, (self._site, self._surfaces, self.order(), self._stale)
+
+    def sheets(self) -> Sequence[str]:
+        """Return the horizons of the plans."""
+        horizons: tuple[str, ...] = self.which.currentData()
+        return horizons
 
     def stale(self) -> list[str]:
         """Return the chosen horizons that are older than their data."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -104,6 +104,10 @@ class SectionSheetDialog(SheetDialog):
         """Return what writes the sections."""
         work = (self._site, self._surfaces, self._uncertainty, self.order(), self._bodies, self._stale)
         return write_section_sheet, work
+
+    def sheets(self) -> Sequence[str]:
+        """Return the names of the sections."""
+        return list(self.lines())
 
     def stale(self) -> list[str]:
         """Return the surfaces and bodies that are older than their data."""
