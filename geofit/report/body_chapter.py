@@ -91,7 +91,7 @@ def body_chapter(found: BodyFindings, t: Language) -> Chapter:
     """Lay out everything about one body."""
     a, name = found.accuracy, found.body.name
     blocks = [*stale_blocks(name, found.stale, t), lamps_paragraph(found.verdict.lamps, t), _facts(found, t)]
-    blocks += [Paragraph(sentence(text, t), "warning") for text in found.missing]
+    blocks += [Paragraph(sentence(text, t), "warning") for text in (*a.warnings, *found.missing)]
     blocks += _pictures(found, t)
     blocks += [*_volumes(found, t), *_logged(a, t), *_checks(found, t), *_left_out(found, t), *_holes(found, t)]
     blocks += _issues(found, t)

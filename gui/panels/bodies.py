@@ -31,6 +31,7 @@ from geofit.gui.panels.marks import icon
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.settings_form import SettingsForm, scrolling
 from geofit.gui.panels.verdict import VerdictBadge
+from geofit.gui.translate import translated
 from geofit.project.body_record import FITTED, BetweenHorizons, BodyProvenance, ClosedMesh, MorphFrame
 
 __all__ = ["BodiesPanel", "BodyShown"]
@@ -96,6 +97,8 @@ class BodiesPanel(QWidget):
         menu.addAction(self.tr("Delete")).triggered.connect(lambda: self.delete_requested.emit(self.name))
         self.more.setMenu(menu)
         self.badge, self.banner, self.origin = VerdictBadge(), Banner(), QLabel()
+        #: What limits the use of the body, whatever its verdict.
+        self.warning = Banner("warning")
         self.origin.setWordWrap(True)
         self.title = QLineEdit()
         self.title.setPlaceholderText(self.tr("Name, by default its codes"))
@@ -156,6 +159,7 @@ class BodiesPanel(QWidget):
         self.badge.setVisible(shown is not None and judged)
         if shown is not None:
             self.badge.show_accuracy(accuracy, bool(shown.old), shown.verdict, shown.waiting)
+        self.warning.show_text("" if accuracy is None else "\n".join(map(translated, accuracy.warnings)))
         self.form.setVisible(judged and not isinstance(self.source.source(), ClosedMesh | BetweenHorizons | MorphFrame))
         self.origin.setText("" if shown is None else shown.origin)
         self.origin.setVisible(bool(self.origin.text()))
@@ -221,7 +225,7 @@ class BodiesPanel(QWidget):
         outer.setContentsMargins(0, 8, 0, 8)
         outer.setSpacing(6)
         outer.addLayout(head)
-        for said in (self.badge, self.origin, self.banner):
+        for said in (self.badge, self.origin, self.warning, self.banner):
             row = QHBoxLayout()
             row.setContentsMargins(8, 0, 8, 0)
             row.addWidget(said)

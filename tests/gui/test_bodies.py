@@ -442,6 +442,27 @@ def test_bodies_whose_data_changed_stay_as_they_were_saved_and_say_so(app, tmp_p
     assert app.document.dirty
 
 
+def test_a_body_of_few_contacts_warns_of_its_band_in_the_panel(opened, tmp_path):
+    rows = ["x,y,z,nx,ny,nz"]
+    for axis, half in enumerate((60, 45, 30)):
+        for sign in (-1, 1):
+            way = [0, 0, 0]
+            way[axis] = sign
+            place = [half * one for one in way]
+            rows.append(",".join(map(str, (*place, *way))))
+    (tmp_path / "few.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    panel = opened.panels.bodies
+    opened.bodies.fit("few", SurfacePicks(str(tmp_path / "few.csv")), BodySettings(realizations=20))
+    opened.idle()
+    result = opened.document.body("few")
+    assert [note.code for note in result.accuracy.warnings] == ["bodies.too-few-contacts-for-band"]
+    assert "P10 to P90 is too narrow" in panel.warning.text
+    assert not panel.warning.isHidden()
+    panel.chosen.emit("")
+    opened.idle()
+    assert panel.warning.isHidden()
+
+
 @pytest.fixture
 def lens(app, tmp_path):
     """A site whose body is fitted to a file of points, which changes then; returns the file's path."""

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import geofit
-from geofit.data.languages import EN, ZH
+from geofit.data.languages import EN, ZH, sentence
+from geofit.data.messages import message
 from geofit.data.stale import StaleCause
 from geofit.pores.representative import representative_volume
 from geofit.pores.volume import RockVolume
@@ -110,6 +111,19 @@ def test_what_was_not_examined_and_a_failed_check_are_said(run):
     assert "Checks: 0 of 1 checks pass; failed: sides" in words(chapter)
     marks = [cell for b in chapter.blocks if isinstance(b, ReportTable) for row in b.rows for cell in row]
     assert any(isinstance(cell, CheckMark) and cell.passed is False for cell in marks)
+
+
+@pytest.mark.parametrize("t", [EN, ZH], ids=lambda t: t.code)
+def test_what_limits_the_use_of_a_body_is_a_warning_in_its_chapter(run, t):
+    def warnings(findings):
+        blocks = body_chapter(findings, t).blocks
+        return [block.text for block in blocks if isinstance(block, Paragraph) and block.style == "warning"]
+
+    bare = BodyFindings(run.body, run.volumes)
+    assert warnings(bare) == []
+    few = message("test.few", "Contacts: {count}", count=8).with_severity("warning")
+    accuracy = replace(run.body.accuracy, notes=(message("test.active", "6 samples are active"), few))
+    assert warnings(replace(bare, body=run.body.with_accuracy(accuracy))) == [sentence(few, t)]
 
 
 @pytest.mark.parametrize("t", [EN, ZH], ids=lambda t: t.code)
