@@ -13,10 +13,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from gettext import NullTranslations
+from numbers import Integral
 from string import Formatter
 from typing import Any, Literal
 
-from geofit.data.rounding import rounded_metres
+from geofit.data.rounding import in_groups, rounded_metres
 from geofit.data.terms import TERMS
 
 __all__ = [
@@ -38,6 +39,8 @@ Severity = Literal["info", "warning", "error"]
 #: The catalogue of the source language: every template is its own translation.
 ENGLISH = NullTranslations()
 
+#: Parameters whose whole numbers name something or are as the user gave them, and are looked for as they are.
+NAMING = frozenset({"code", "given", "index", "i", "j", "number", "page", "row", "seed", "value", "version", "vertex"})
 _GRAVEST_FIRST = ("error", "warning", "info")
 _ITEMS = "{first}, {second}"
 
@@ -164,7 +167,7 @@ def render(value: Any, catalogue: NullTranslations) -> Any:
         else:
             template = catalogue.ngettext(value.template, value.plural, int(value.params["count"]))
         # A text without parameters may show braces, as of a TOML table.
-        fields = {name: render(param, catalogue) for name, param in value.params.items()}
+        fields = {name: _counted(name, render(param, catalogue)) for name, param in value.params.items()}
         if not fields:
             return template
         if _LENGTH not in template:
@@ -184,6 +187,21 @@ class _Negative(float):
     def __format__(self, spec: str) -> str:
         text = super().__format__(spec)
         return text.replace("-", "−", 1) if spec else text
+
+
+def _counted(name: str, value: Any) -> Any:
+    """Return a whole number as one that is written in groups, unless it names something; other values as they are."""
+    if name in NAMING or isinstance(value, bool) or not isinstance(value, Integral):
+        return value
+    return _Counted(value)
+
+
+class _Counted(int):
+    """A whole number that is written in groups of three from five digits on; with a format it is as that says."""
+
+    def __format__(self, spec: str) -> str:
+        text = super().__format__(spec)
+        return text if spec else in_groups(text)
 
 
 class _WithLengths(Formatter):
