@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import os
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
@@ -13,6 +14,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 from geofit.bodies.settings import BodySettings
 from geofit.data.files import file_stems
 from geofit.data.messages import message
+from geofit.data.stale import stale_warning
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.activity import Activity, Work
 from geofit.gui.body_preview import LivePreview
@@ -22,9 +24,10 @@ from geofit.gui.dialogs.step_fields import BodyStepDialog
 from geofit.gui.fitting import Fitting
 from geofit.gui.panels.body_source import MESH, OTHER, OUTLINES, POINTS
 from geofit.gui.preferences import Preferences
-from geofit.gui.save_file import ask_save_file
+from geofit.gui.save_file import ask_save_file, may_replace
 from geofit.gui.session import Session
 from geofit.gui.showing import Showing
+from geofit.gui.source_watch import SourceWatch
 from geofit.gui.translate import shown_error, translated
 from geofit.gui.workspace import Workspace
 from geofit.io.bodies import BODY_ENDINGS
@@ -44,7 +47,8 @@ from geofit.project.body_saving import largest_difference
 from geofit.project.body_sources import outline_layers, site_codes
 from geofit.project.horizon_body import needed_horizons
 from geofit.project.provenance import Provenance
-from geofit.project.step_files import Signed
+from geofit.project.staleness import dated_body
+from geofit.project.step_files import Signed, certificate_of
 from geofit.report.digits import volume
 
 __all__ = ["Bodies"]
@@ -68,6 +72,7 @@ class Bodies(QObject):
         self.showing = BodyShowing(session.document, workspace, showing, self)
         self.styles = BodyStyles(session.document, fitting, workspace, window)
         self.preview = LivePreview(session.document, workspace, self)
+        self.watch = SourceWatch(session.document, activity, self)
         #: Provenances that are being made again, and those that were given up until another site is opened.
         self._pending: set[BodyProvenance] = set()
         self._given_up: set[BodyProvenance] = set()
@@ -109,7 +114,7 @@ class Bodies(QObject):
 
     def ask_export(self, name: str) -> None:
         """Ask for a file; its ending is the format."""
-        result = self._document.body(name)
+        result = dated_body(self._document, name)
         if result is None:
             return
         blocks = BLOCK_ENDINGS if result.fitted is not None else ()
@@ -125,19 +130,23 @@ class Bodies(QObject):
             if target.suffix not in (".step", ".stp"):
                 self.export(name, target)
                 return
-            dialog = BodyStepDialog(name, self._document.site, self._window)
+            dialog = BodyStepDialog(name, self._document.site, self._window, stale=bool(result.stale))
             if dialog.exec():
-                self.export(name, target, dialog.fields.signed())
+                signed = dialog.fields.signed()
+                pages = [certificate_of(target)] if signed.certificate else []
+                if may_replace(pages, title, self._window):
+                    self.export(name, target, signed)
 
     def export(self, name: str, target: Path, signed: Signed | None = None) -> None:
         """Write a body in the format of a file's ending; ``signed`` is what a STEP file states."""
-        result = self._document.body(name)
+        result = dated_body(self._document, name)
         if result is not None:
             title = self.tr("Export {name}").format(name=target.name)
             record = self._document.state.bodies.get(name)
             colour = "" if record is None else record.style.colour
             work = (result, name, target, signed, colour)
-            self._activity.do(title, export_body, *work, on_done=self._exported, in_process=True)
+            done = partial(self._exported, [name] if result.stale else [])
+            self._activity.do(title, export_body, *work, on_done=done, in_process=True)
 
     def read_file(self, kind: str, file: Path) -> None:
         """Take the file of a source into the panel, with the codes or layers that it offers."""
@@ -156,8 +165,7 @@ class Bodies(QObject):
 
     def _inputs(self, name: str, source: BodySource, settings: BodySettings) -> tuple[object, ...]:
         document, horizons = self._document, self._horizons()
-        file = document.site_file
-        folder = Path.cwd() if file is None else file.resolve().parent
+        folder = document.site_folder or Path.cwd()
         return source, settings, name, document.site.boreholes, folder, horizons
 
     def _horizons(self) -> dict[str, HorizonFit]:
@@ -171,6 +179,7 @@ class Bodies(QObject):
     def _fitted(self, name: str, provenance: BodyProvenance, result: BodyResult) -> None:
         document = self._document
         known = document.state.bodies.get(name)
+        document.sources.made(provenance, self._using)
         self._put(provenance, result)
         style = BodyStyle(next_colour(document.state.bodies)) if known is None else known.style
         record = BodyRecord(provenance, style)
@@ -227,6 +236,7 @@ class Bodies(QObject):
 
     def _made_again(self, name: str, wanted: BodyProvenance, made: BodyProvenance, result: BodyResult) -> None:
         self._pending.discard(wanted)
+        self._document.sources.made(made, self._using)
         if made != wanted:
             self._lost(name, wanted, None)
             return
@@ -238,7 +248,6 @@ class Bodies(QObject):
         """Keep what the project holds of a body whose data have changed, or cannot be read."""
         self._pending.discard(provenance)
         self._given_up.add(provenance)
-        self.showing.changed.add(provenance)
         if error is None:
             text = message(
                 "gui.log-body-data-changed",
@@ -246,6 +255,8 @@ class Bodies(QObject):
                 name=name,
             )
         else:
+            self.showing.lost.add(provenance)
+            self.watch.look()
             text = message(
                 "gui.log-body-not-made-again",
                 "Body {name} cannot be made again: {error}",
@@ -281,7 +292,7 @@ class Bodies(QObject):
             title, lambda: (measured_strata, (result, self._horizons())), on_done=done, in_process=True
         )
 
-    def _exported(self, written: BodyExport) -> None:
+    def _exported(self, stale: list[str], written: BodyExport) -> None:
         path = str(written.path.resolve())
         _LOG.info(message("gui.log-file-written", "Wrote {file}", file=path))
         pages = [] if written.certificate is None else [str(written.certificate.resolve())]
@@ -290,6 +301,8 @@ class Bodies(QObject):
         if back is not None:
             checks = "; ".join(translated(check.text) for check in back.checks if check.passed is False)
             text += " " + (checks or self.tr("Read back: {n} faces, all checks pass.").format(n=back.faces))
+        if stale:
+            text += " " + translated(stale_warning(stale))
         self.reported.emit(text)
 
     def _ask_file(self, kind: str) -> None:
@@ -346,6 +359,7 @@ class Bodies(QObject):
         self.showing.renew()
 
     def _on_site(self) -> None:
+        self.watch.forget()
         self._pending.clear()
         self._given_up.clear()
 

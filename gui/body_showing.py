@@ -8,6 +8,7 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from geofit.bodies.violations import Violation
+from geofit.data.messages import message
 from geofit.gui.panels.bodies import BodyShown
 from geofit.gui.panels.marks import level_mark
 from geofit.gui.panels.project_tree import TreeBody
@@ -17,10 +18,11 @@ from geofit.gui.translate import translated
 from geofit.gui.workspace import Workspace
 from geofit.implicit.mesh import TriangleMesh
 from geofit.project.body_building import BodyResult, origin_text
-from geofit.project.body_record import FITTED, BodyProvenance, BodyRecord, Intervals
-from geofit.project.body_sources import given_of_logs, interval_codes
+from geofit.project.body_record import FITTED, BodyProvenance, BodyRecord
+from geofit.project.body_sources import interval_codes
 from geofit.project.document import Document
 from geofit.project.provenance import Provenance
+from geofit.project.staleness import stale_body_causes
 from geofit.report.digits import volume
 
 __all__ = ["BodyShowing"]
@@ -38,12 +40,11 @@ class BodyShowing(QObject):
         super().__init__(parent)
         self._document, self._panels, self._showing = document, workspace, showing
         self.chosen = ""
-        #: Provenances whose data are known to have changed.
-        self.changed: set[BodyProvenance] = set()
+        #: Provenances whose bodies could not be made again.
+        self.lost: set[BodyProvenance] = set()
         #: From what the horizons were made between which each body was divided.
         self.divided: dict[BodyProvenance, Mapping[str, Provenance]] = {}
         self._meshes: dict[int, tuple[TriangleMesh, TriangleMesh]] = {}
-        self._logs: tuple[object, str] = (None, "")
         self._site = True
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self.now)
@@ -116,27 +117,32 @@ class BodyShowing(QObject):
             known = self._meshes[id(result.mesh)] = (result.mesh, made)
         return known[1]
 
-    def stale(self, record: BodyRecord) -> bool:
-        """Whether the data of a body are known to be others than those it was made from."""
-        source = record.provenance.source
-        if record.provenance in self.changed:
-            return True
-        if isinstance(source, Intervals) and not source.file:
-            logs = self._document.site.boreholes
-            if self._logs[0] is not logs:
-                self._logs = (logs, given_of_logs(logs))
-            return self._logs[1] != record.provenance.given
-        return False
+    def stale(self, name: str) -> bool:
+        """Whether a body is known to be older than its data, or could not be made again."""
+        return bool(stale_body_causes(self._document, name)) or self._is_lost(name)
+
+    def _is_lost(self, name: str) -> bool:
+        return self._document.state.bodies[name].provenance in self.lost
 
     def _shown(self, name: str, record: BodyRecord) -> BodyShown:
         result = self._document.body(name)
         accuracy, verdict = (None, None) if result is None else (result.accuracy, result.verdict)
         waiting = result is None or (result.origin == "read back" and isinstance(record.provenance.source, FITTED))
-        stale = self.stale(record)
+        old = self._old(name)
         origin = "" if result is None or result.origin == "fitted" else translated(origin_text(result))
-        return BodyShown(
-            record.provenance, accuracy, verdict, waiting=waiting and not stale, stale=stale, origin=origin
-        )
+        return BodyShown(record.provenance, accuracy, verdict, waiting=waiting and not old, old=old, origin=origin)
+
+    def _old(self, name: str) -> str:
+        """Return why a body is to be fitted again, with what has changed; empty: it is not."""
+        causes = stale_body_causes(self._document, name)
+        if causes:
+            text = message(
+                "gui.body-data-changed",
+                "The data have changed since this body was made: press Fit. Changed: {names}",
+                names=tuple(cause.text for cause in causes),
+            )
+            return translated(text)
+        return self.tr("This body could not be made again from its data: press Fit.") if self._is_lost(name) else ""
 
     def mark(self, name: str) -> str:
         """Return the mark of a body: its colour with its verdict."""
@@ -145,7 +151,7 @@ class BodyShowing(QObject):
     def _mark(self, name: str, record: BodyRecord) -> str:
         result = self._document.body(name)
         verdict = None if result is None else result.verdict
-        sign = "stale" if self.stale(record) else "" if verdict is None else level_mark(verdict.level)
+        sign = "stale" if self.stale(name) else "" if verdict is None else level_mark(verdict.level)
         return f"body:{record.style.colour}:{sign}"
 
     def _show_tree(self) -> None:
@@ -158,10 +164,11 @@ class BodyShowing(QObject):
                 words = f"{name}: {volume(result.volume)}"
             if verdict is not None:
                 words += "\n" + translated(verdict.text)
-            if self.stale(record):
-                words += "\n" + self.tr("The data have changed since this body was made: press Fit.")
+            old = self._old(name)
+            if old:
+                words += f"\n{old}"
             count = None if accuracy is None else accuracy.n
-            rows.append(TreeBody(name, self._mark(name, record), record.style.visible, count, words))
+            rows.append(TreeBody(name, self._mark(name, record), record.style.visible, count, words, bool(old)))
         self._panels.tree.show_bodies(rows)
 
     def _show_scene(self) -> None:
@@ -202,7 +209,7 @@ class BodyShowing(QObject):
 
     def _on_site(self) -> None:
         self._site, self.chosen = True, ""
-        self.changed.clear()
+        self.lost.clear()
         self.divided.clear()
         self._meshes.clear()
         # A project opens with its first body in the panel.

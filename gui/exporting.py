@@ -24,7 +24,7 @@ from geofit.io.export.write import FORMATS
 from geofit.project.document import Document
 from geofit.project.export_task import export_surfaces
 from geofit.project.interventions import interventions_of
-from geofit.project.staleness import stale_causes
+from geofit.project.staleness import dated_body, stale_causes
 from geofit.report.result import HorizonResult
 
 __all__ = ["Delivering"]
@@ -112,7 +112,10 @@ class Delivering(QObject):
         surfaces = self._document.surfaces()
         bodies = sheet_bodies(self._document)
         thickness, uncertain = self._showing.thickness, self._showing.uncertainties()
-        dialog = SectionSheetDialog(site, surfaces, line, thickness, uncertain, bodies, self._folder(), self._window)
+        stale = [name for name in surfaces if self._document.stale(name)]
+        dialog = SectionSheetDialog(
+            site, surfaces, line, thickness, uncertain, bodies, self._folder(), self._window, stale
+        )
         dialog.exec()
         if dialog.files:
             self._written(list(dialog.files))
@@ -124,7 +127,8 @@ class Delivering(QObject):
         surfaces = self._surfaces()
         if surfaces:
             chosen = self._document.selection.horizon
-            dialog = PlanSheetDialog(self._document.site_in_use(), surfaces, chosen, self._folder(), self._window)
+            site, stale = self._document.site_in_use(), {name: stale_causes(self._document, name) for name in surfaces}
+            dialog = PlanSheetDialog(site, surfaces, chosen, self._folder(), self._window, stale)
             dialog.exec()
             if dialog.files:
                 self._written(list(dialog.files))
@@ -137,7 +141,11 @@ class Delivering(QObject):
         if surfaces:
             site, provenances = self._document.site_in_use(), dict(self._document.state.provenances)
             results = [self.result(name, surface) for name, surface in surfaces.items()]
-            bodies = {name: body for name, body in self._document.made_bodies().items() if body.fitted is not None}
+            bodies = {
+                name: body
+                for name in self._document.state.bodies
+                if (body := dated_body(self._document, name)) is not None and body.fitted is not None
+            }
             dialog = ReportDialog(site, results, self._window, self._document.blocks(), self._folder(), bodies)
             dialog.written.connect(self.list_report)
             dialog.examined.connect(

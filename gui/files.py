@@ -234,6 +234,11 @@ class Files(QObject):
         if session.site_file is None:
             session.discard()
             return
+        if not session.site_file.is_file():
+            elsewhere = self._ask_site_file(session.base.name, session.site_file)
+            if elsewhere is not None:
+                self.recover(session.at(elsewhere))
+            return
         title = self.tr("Bring back {name}").format(name=session.base.name)
         work = (session.site_file, session.final.added)
         self._activity.do(title, read_again, *work, on_done=lambda site: self._recovered(session, site))
@@ -251,7 +256,9 @@ class Files(QObject):
 
         def failed(error: Exception) -> None:
             if isinstance(error, SiteFileGoneError):
-                self._ask_site_file(path, error)
+                elsewhere = self._ask_site_file(path.name, Path(error.file or ""), path.parent)
+                if elsewhere is not None:
+                    self._open(path, site_file=elsewhere)
             else:
                 self._activity.fail(title, error)
 
@@ -262,26 +269,23 @@ class Files(QObject):
         read = partial(read_project, site_file=site_file) if is_project(path) else _read_site
         self._activity.do(title, read, path, on_done=opened, on_failed=failed)
 
-    def _ask_site_file(self, project: Path, error: SiteFileGoneError) -> None:
-        """Ask where the site file of a project is now, and open the project with it."""
+    def _ask_site_file(self, name: str, gone: Path, start: Path | None = None) -> Path | None:
+        """Ask where the site file of a project or a session is now, first at ``start``; None if it is not known."""
         box = QMessageBox(self._window)
         box.setIcon(QMessageBox.Icon.Question)
         box.setWindowTitle("geofit")
-        box.setText(
-            self.tr("The site file of {name} no longer exists: {file}").format(name=project.name, file=error.file or "")
-        )
+        box.setText(self.tr("The site file of {name} no longer exists: {file}").format(name=name, file=gone))
         box.setInformativeText(self.tr("If it was moved, show where it is now."))
         box.setStandardButtons(QMessageBox.StandardButton.Open | QMessageBox.StandardButton.Cancel)
         if box.exec() != QMessageBox.StandardButton.Open:
-            return
-        name, _ = QFileDialog.getOpenFileName(
+            return None
+        chosen, _ = QFileDialog.getOpenFileName(
             self._window,
-            self.tr("Site file of {name}").format(name=project.name),
-            str(project.parent),
+            self.tr("Site file of {name}").format(name=name),
+            str(start or self._preferences.folder),
             ";;".join((self.tr("Site files (*.toml)"), self.tr("All files (*)"))),
         )
-        if name:
-            self._open(project, site_file=Path(name))
+        return Path(chosen) if chosen else None
 
     def _open_sample(self, place: Path) -> None:
         self._activity.cancel()

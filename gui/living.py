@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 from geofit.data.messages import Message, message, plural_message
 from geofit.data.site import Site
 from geofit.gui.activity import Activity, Work
+from geofit.gui.file_stamps import Stamp, stamp
 from geofit.gui.fitting import Fitting
 from geofit.gui.offer_bar import OfferBar
 from geofit.gui.session import Session
@@ -31,8 +32,6 @@ from geofit.site.states import Comparison
 __all__ = ["Living"]
 
 _LOG = logging.getLogger(__name__)
-#: Time of the last change and size of a file: unless these differ its hash need not be looked at.
-_Stamp = tuple[int, int] | None
 
 
 class Living(QObject):
@@ -50,7 +49,7 @@ class Living(QObject):
         self._session, self._activity, self._fitting = session, activity, fitting
         self._panels, self._bar, self._window = panels, bar, window
         self._document = session.document
-        self._stamps: dict[str, _Stamp] = {}
+        self._stamps: dict[str, Stamp] = {}
         #: What of the work did not survive the last change of the data, and the data since.
         self._lost: tuple[Message, ...] = ()
         self._lost_since = ""
@@ -164,12 +163,12 @@ class Living(QObject):
             if what == "missing":
                 _LOG.warning(message("gui.log-file-missing", "{file} no longer exists.", file=name))
 
-    def _stamped(self) -> dict[str, _Stamp]:
+    def _stamped(self) -> dict[str, Stamp]:
         document = self._document
         if document.site_file is None:
             return {}
         folder = document.site_file.parent
-        return {name: _stamp(folder / name) for name in document.read.inputs}
+        return {name: stamp(folder / name) for name in document.read.inputs}
 
     def _on_site(self) -> None:
         self._bar.hide()
@@ -251,11 +250,3 @@ class Living(QObject):
         for text in (comparison.change.text, comparison.test.text):
             _LOG.info(text)
         self.reported.emit(translated(comparison.test.text))
-
-
-def _stamp(file: Path) -> _Stamp:
-    try:
-        found = file.stat()
-    except OSError:
-        return None
-    return found.st_mtime_ns, found.st_size

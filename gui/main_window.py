@@ -191,6 +191,7 @@ class MainWindow(QMainWindow):
         super().changeEvent(event)
         if event.type() == QEvent.Type.ActivationChange and self._ready and self.isActiveWindow():
             self.living.look()
+            self.bodies.watch.look()
         if event.type() == QEvent.Type.PaletteChange and self._ready:
             self.actions_.draw_icons()
             self.menus.draw_icons()

@@ -1,16 +1,20 @@
-"""Asks where a file shall be saved; whoever writes it has agreed to replace what has this name already."""
+"""Asks where files shall be saved; whoever writes them has agreed to replace what has these names already."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
-from geofit.data.messages import Untranslated, message
+from geofit.data.messages import Untranslated, message, some_of
 from geofit.gui.translate import translated
 
-__all__ = ["ask_save_file"]
+__all__ = ["ask_save_file", "may_replace"]
+
+#: Files that a question names; of more it gives the number.
+NAMED = 4
 
 
 def ask_save_file(parent: QWidget, title: str, start: str | Path, kinds: str) -> tuple[Path, str] | None:
@@ -42,7 +46,7 @@ def ask_save_file(parent: QWidget, title: str, start: str | Path, kinds: str) ->
         if not name:
             return None
         path, kind = _completed(name, kind, kinds)
-        if not path.exists() or _may_replace(path, title, parent):
+        if may_replace([path], title, parent):
             return path, kind
 
 
@@ -57,8 +61,14 @@ def _completed(name: str, chosen: str, kinds: str) -> tuple[Path, str]:
     return Path(name + endings[chosen][0]), chosen
 
 
-def _may_replace(path: Path, title: str, parent: QWidget) -> bool:
-    text = message("gui.replace-file", "{name} already exists. Replace it?", name=Untranslated(path.name))
+def may_replace(files: Iterable[Path], title: str, parent: QWidget) -> bool:
+    """Ask whether the files that exist may be replaced, if there are any; True if nothing is lost unasked."""
+    names = [Untranslated(file.name) for file in files if file.exists()]
+    if not names:
+        return True
+    text = message("gui.replace-file", "{name} already exists. Replace it?", name=names[0])
+    if len(names) > 1:
+        text = message("gui.replace-files", "{names} already exist. Replace them?", names=some_of(names, NAMED))
     box = QMessageBox(QMessageBox.Icon.Warning, title, translated(text), parent=parent)
     box.setStandardButtons(QMessageBox.StandardButton.Yes | QMessageBox.StandardButton.No)
     box.setDefaultButton(QMessageBox.StandardButton.No)

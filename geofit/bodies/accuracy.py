@@ -58,6 +58,11 @@ class BodyAccuracy(Accuracy):
     far_distance: float = 0.0
     open_sides: tuple[str, ...] = ()
 
+    @property
+    def warnings(self) -> tuple[Message, ...]:
+        """The notes that limit what the body may be used for."""
+        return tuple(note for note in self.notes if note.severity == "warning")
+
 
 def examine_body(body: BodyFit) -> BodyAccuracy:
     """Return the accuracy of a body."""

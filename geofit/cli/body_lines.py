@@ -57,6 +57,6 @@ def body_lines(run: BodyRun) -> BodyLines:
             f"solids: {file.solids}, {file.grade}, {'passed' if file.passed else 'FAILED'}",
         ),
     )
-    warnings = [f"{run.body.name}: {note}" for note in a.notes if note.severity == "warning"]
+    warnings = [f"{run.body.name}: {note}" for note in a.warnings]
     sentences = (f"{run.body.name}: {run.verdict.text}", *reasons, *warnings)
     return BodyLines(run.body.name, rows, sentences, run.exit_code, len(run.files))

@@ -9,14 +9,15 @@ Templates are literals, so that Babel can extract them: ``pybabel extract -k mes
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from gettext import NullTranslations
+from numbers import Integral
 from string import Formatter
 from typing import Any, Literal
 
-from geofit.data.rounding import rounded_metres
+from geofit.data.rounding import in_groups, rounded_metres
 from geofit.data.terms import TERMS
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
     "message",
     "plural_message",
     "render",
+    "some_of",
 ]
 
 Severity = Literal["info", "warning", "error"]
@@ -37,6 +39,8 @@ Severity = Literal["info", "warning", "error"]
 #: The catalogue of the source language: every template is its own translation.
 ENGLISH = NullTranslations()
 
+#: Parameters whose whole numbers name something or are as the user gave them, and are looked for as they are.
+NAMING = frozenset({"code", "given", "index", "i", "j", "number", "page", "row", "seed", "value", "version", "vertex"})
 _GRAVEST_FIRST = ("error", "warning", "info")
 _ITEMS = "{first}, {second}"
 
@@ -132,6 +136,22 @@ def plural_message(code: str, singular: str, plural: str, /, *, count: int, **pa
     return Message(code, singular, {"count": count, **_kept(params)}, plural)
 
 
+def some_of(names: Sequence[str], most: int) -> tuple[str | Message, ...]:
+    """Return names for a sentence: the first ``most``, and how many more there are.
+
+    Examples
+    --------
+    >>> str(message("data.listed", "{names}", names=some_of(["T1", "T2", "T3", "T4"], 2)))
+    'T1, T2 and 2 more'
+    """
+    if len(names) <= most:
+        return tuple(names)
+    more = message(
+        "data.names-and-more", "{names} and {count} more", names=tuple(names[:most]), count=len(names) - most
+    )
+    return (more,)
+
+
 def gravest_first(messages: Iterable[Message]) -> tuple[Message, ...]:
     """Return messages by severity: errors, warnings, information; equally grave ones in their order."""
     return tuple(sorted(messages, key=lambda one: _GRAVEST_FIRST.index(one.severity)))
@@ -147,7 +167,7 @@ def render(value: Any, catalogue: NullTranslations) -> Any:
         else:
             template = catalogue.ngettext(value.template, value.plural, int(value.params["count"]))
         # A text without parameters may show braces, as of a TOML table.
-        fields = {name: render(param, catalogue) for name, param in value.params.items()}
+        fields = {name: _counted(name, render(param, catalogue)) for name, param in value.params.items()}
         if not fields:
             return template
         if _LENGTH not in template:
@@ -167,6 +187,21 @@ class _Negative(float):
     def __format__(self, spec: str) -> str:
         text = super().__format__(spec)
         return text.replace("-", "−", 1) if spec else text
+
+
+def _counted(name: str, value: Any) -> Any:
+    """Return a whole number as one that is written in groups, unless it names something; other values as they are."""
+    if name in NAMING or isinstance(value, bool) or not isinstance(value, Integral):
+        return value
+    return _Counted(value)
+
+
+class _Counted(int):
+    """A whole number that is written in groups of three from five digits on; with a format it is as that says."""
+
+    def __format__(self, spec: str) -> str:
+        text = super().__format__(spec)
+        return text if spec else in_groups(text)
 
 
 class _WithLengths(Formatter):

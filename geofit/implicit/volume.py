@@ -173,8 +173,10 @@ def curved_extent(field: Field, mesh: TriangleMesh) -> Extent:
     Returns
     -------
     Extent
-        Error of order h^4; what flat triangles differ from it is the error that is given.
+        Error of order h^4; what flat triangles differ from it is the error that is given. No triangles: 0.
     """
+    if not len(mesh.triangles):
+        return Extent(0.0, 0.0)
     middles = _curved_middles(field, mesh)
     keys = mesh.edges[:, 0] * len(mesh.vertices) + mesh.edges[:, 1]
     sides = np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=-1)

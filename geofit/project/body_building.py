@@ -18,6 +18,7 @@ from geofit.bodies.settings import BodySettings
 from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite
 from geofit.data.progress import Progress, tell
+from geofit.data.stale import StaleCause
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.implicit.mesh import TriangleMesh
 from geofit.project.body_record import (
@@ -64,7 +65,8 @@ class BodyResult:
     ``strata`` are its volumes between horizons, ``divided_by`` the surfaces that were available for them by name,
     ``questions`` what outlines on sections leave open, ``left_out`` how well its holes predict each other.
     ``origin`` is how it came here; ``difference`` the largest distance in metres between a body made again and the
-    triangles that the project held, nan where nothing was compared.
+    triangles that the project held, nan where nothing was compared. ``stale`` lists what has changed since it was made,
+    where that was looked for.
     """
 
     body: BodyFit | MorphBody | MeshBody
@@ -76,6 +78,7 @@ class BodyResult:
     left_out: LeftOutBody | None = None
     origin: Origin = "fitted"
     difference: float = np.nan
+    stale: tuple[StaleCause, ...] = ()
 
     @property
     def accuracy(self) -> BodyAccuracy | None:

@@ -71,7 +71,8 @@ def export_body(
         body = _with_field(made, name) if isinstance(made, MeshBody) else replace(made, name=name)
         stated = (signed or Signed()).about([body.extent[0] + body.origin])
         found = body.write_step(target, **stated.fields, colour=colour)
-        return BodyExport(target, found, certified(target, {name: found}, {name: body.epsilon}, stated))
+        old = [name] if result.stale else []
+        return BodyExport(target, found, certified(target, {name: found}, {name: body.epsilon}, stated, old))
     if ending in TRIANGLE_ENDINGS:
         _triangles(result, name, target)
     elif ending in BLOCK_ENDINGS and fitted is not None:

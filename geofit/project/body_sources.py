@@ -12,10 +12,11 @@ import numpy as np
 
 from geofit.bodies.data import BodyData, BodyIssue
 from geofit.bodies.settings import BodySettings
-from geofit.data.errors import InputError
+from geofit.data.errors import GeofitError, InputError
 from geofit.data.messages import Untranslated, message
 from geofit.data.progress import Progress
 from geofit.project.body_record import Intervals, Outlines, SurfacePicks
+from geofit.project.known_sources import FileSource
 
 if TYPE_CHECKING:
     from geofit.bodies.outlines import Outline
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SourceData",
+    "data_now",
     "file_digest",
     "given_of_logs",
     "interval_codes",
@@ -91,6 +93,31 @@ def read_body_source(
             return SourceData(
                 _with_issues(picked.data, picked.issues), file_digest(folder / file), issues=picked.issues
             )
+
+
+def data_now(
+    sources: Sequence[FileSource], folder: Path, *, progress: Progress | None = None
+) -> dict[FileSource, tuple[str, tuple[Path, ...]]]:
+    """Return the hash of what each source holds now, empty where it cannot be read, and the files that were read."""
+    return {source: _held(source, folder / source.file, progress) for source in sources}
+
+
+def _held(source: FileSource, file: Path, progress: Progress | None) -> tuple[str, tuple[Path, ...]]:
+    try:
+        match source:
+            case Intervals():
+                site = _site(file, progress)
+                given, names = given_of_logs(site.boreholes), list(site.inputs)
+            case Outlines(layers=layers):
+                from geofit.io.outlines import read_outlines
+
+                inputs = read_outlines(file, layers).inputs
+                given, names = _given_of(inputs), list(inputs)
+            case _:
+                given, names = file_digest(file), []
+    except (GeofitError, OSError):
+        return "", (file,)
+    return given, (file, *(file.parent / name for name in names))
 
 
 def outline_layers(file: Path, *, progress: Progress | None = None) -> dict[str, int]:
@@ -170,10 +197,15 @@ def _with_issues(data: BodyData, issues: Sequence[ImportIssue]) -> BodyData:
     return replace(data, issues=(*found, *data.issues))
 
 
-def _campaigns(file: Path, progress: Progress | None) -> Sequence[Any]:
+def _site(file: Path, progress: Progress | None) -> Site:
     from geofit.io.site_file import load_site
 
     site: Site = load_site(file, progress)
+    return site
+
+
+def _campaigns(file: Path, progress: Progress | None) -> Sequence[Any]:
+    site = _site(file, progress)
     if not any(campaign.logs for campaign in site.boreholes):
         raise InputError(
             message("project.site-without-logs", "The site has no interval tables"),

@@ -13,11 +13,13 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.body_building import BodyResult
-from geofit.project.body_record import BodyProvenance
+from geofit.project.body_record import BodyProvenance, BodySource
 from geofit.project.body_shelf import BodyShelf
+from geofit.project.body_sources import given_of_logs
 from geofit.project.building import Given, given_of
 from geofit.project.fault_blocks import Blocks, site_with_blocks
 from geofit.project.horizon_commands import MergeHorizons
+from geofit.project.known_sources import KnownSources
 from geofit.project.listing import Listing, listing
 from geofit.project.provenance import DocumentError, Provenance, Row, data_digest, find_rows, fingerprint, without_rows
 from geofit.project.shelf import Shelf
@@ -53,7 +55,7 @@ class Document:
     order_changed(), name_changed()
         The order of the horizons; the site's title.
     bodies_changed()
-        A body came, went, has another name or style, or became available.
+        A body came, went, has another name or style, became available, or its data were read again.
     selection_changed(selection)
         Another horizon or row was chosen.
     saved_changed()
@@ -67,12 +69,13 @@ class Document:
         #: SHA-256 of the project file as it was read or written here: another window may have saved since.
         self.project_digest = ""
         self.selection = Selection()
-        self.shelf, self.bodies = Shelf(), BodyShelf()
+        self.shelf, self.bodies, self.sources = Shelf(), BodyShelf(), KnownSources()
         self._state = self._saved = State()
         self._points: dict[tuple[str, frozenset[Row]], PointSet] = {}
         self._fingerprints: dict[str, str] = {}
         self._used = _EMPTY
         self._data: dict[str, Site] = {}
+        self._logs: dict[str, str] = {}
         self._comparisons: dict[str, tuple[tuple[Provenance, Provenance], Comparison]] = {}
         self._judged: dict[str, tuple[HorizonFit, HorizonFit]] = {}
         self._listings: dict[str, tuple[tuple[object, object, object], Listing]] = {}
@@ -103,6 +106,8 @@ class Document:
         self.site_file, self.project_file, self.project_digest = site_file, project_file, digest
         self.shelf.clear()
         self.bodies.clear()
+        self.sources.clear()
+        self._logs.clear()
         self._judged.clear()
         self._listings.clear()
         self._comparisons.clear()
@@ -121,6 +126,11 @@ class Document:
         """The folder of the project, or of the site before it was saved: where exports go unless told otherwise."""
         file = self.project_file or self.site_file
         return None if file is None else file.resolve().parent
+
+    @property
+    def site_folder(self) -> Path | None:
+        """The folder that the files of bodies are named from; None where no site file is open."""
+        return None if self.site_file is None else self.site_file.resolve().parent
 
     @property
     def is_open(self) -> bool:
@@ -144,6 +154,16 @@ class Document:
     def data(self, name: str) -> Site | None:
         """Return the data of the site that a state names, None if they are not known."""
         return self._data.get(name)
+
+    def logs(self, data: str) -> str | None:
+        """Return the hash of the borehole logs in the data that a state names, None if they are not known."""
+        if data not in self._logs and data in self._data:
+            self._logs[data] = given_of_logs(self._data[data].boreholes)
+        return self._logs.get(data)
+
+    def data_with_logs(self, given: str) -> Site | None:
+        """Return known data of the site whose borehole logs have a hash, None if there are none."""
+        return next((site for data, site in self._data.items() if self.logs(data) == given), None)
 
     @property
     def state(self) -> State:
@@ -350,6 +370,12 @@ class Document:
         self.bodies.put(provenance, result, wanted)
         if provenance in wanted:
             self.bodies_changed.emit()
+
+    def know_sources(self, given: Mapping[BodySource, str]) -> None:
+        """Keep the hashes of the data that sources of bodies hold now; empty: they cannot be read."""
+        for source, one in given.items():
+            self.sources.read(source, one)
+        self.bodies_changed.emit()
 
     def stale(self, name: str) -> bool:
         """Whether the surface was made from other settings, rows or files than the horizon has now."""

@@ -24,7 +24,7 @@ import sys
 import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import IO, Any
 
@@ -159,6 +159,30 @@ class Unfinished:
             if self.project_file is not None:
                 found |= saved_data(state, self.project_file)
         return list(found.values())
+
+    def at(self, site_file: Path) -> Unfinished:
+        """Return the session with its site file, which was moved, where it is now.
+
+        The project was moved with it if it is at the same place from there. Else it is to be saved: it names a site
+        file that is not there, or is not there itself.
+        """
+        project = self._project_from(site_file)
+        if project is not None:
+            return replace(self, site_file=site_file, project_file=project)
+        left = self.project_file if self.project_file is not None and self.project_file.is_file() else None
+        return replace(
+            self, site_file=site_file, project_file=left, saved=State(), digest="" if left is None else self.digest
+        )
+
+    def _project_from(self, site_file: Path) -> Path | None:
+        if self.site_file is None or self.project_file is None:
+            return None
+        try:
+            place = os.path.relpath(self.project_file, self.site_file.parent)
+        except ValueError:  # on another drive of Windows
+            return None
+        project = Path(os.path.normpath(site_file.parent / place))
+        return project if project.is_file() else None
 
     @property
     def final(self) -> State:

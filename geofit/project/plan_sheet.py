@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from geofit.data.languages import language as language_of
+from geofit.data.languages import translate
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
+from geofit.data.stale import StaleCause, stale_warning
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.section_sheet import SheetForm
 from geofit.report.paper import SheetTitle
@@ -39,9 +41,16 @@ class PlanOrder:
 
 
 def write_plan_sheet(
-    site: Site, surfaces: Mapping[str, HorizonFit], order: PlanOrder, *, progress: Progress | None = None
+    site: Site,
+    surfaces: Mapping[str, HorizonFit],
+    order: PlanOrder,
+    stale: Mapping[str, tuple[StaleCause, ...]] | None = None,
+    *,
+    progress: Progress | None = None,
 ) -> tuple[int, tuple[Path, ...]]:
     """Draw the plans and write them; return the scale, 1 : so many, and the files.
+
+    ``stale`` has what has changed since the surfaces were fitted: their sheets warn of it.
 
     Raises
     ------
@@ -50,7 +59,7 @@ def write_plan_sheet(
     Cancelled
         If ``progress`` returned False.
     """
-    results = [HorizonResult(surfaces[name], site) for name in order.horizons]
+    results = [HorizonResult(surfaces[name], site, stale=(stale or {}).get(name, ())) for name in order.horizons]
     unit = order.block.unit
     scale = plan_scale(results, order.paper, order.scale, unit)
     t, files = language_of(order.language), []
@@ -64,7 +73,9 @@ def write_plan_sheet(
             lines = {result.name: contours(result.surface.surface, steps[result.name]) for result in results}
             # A drawing has one unit: where it is the foot, that of the grid.
             drawn = unit if unit == "m" or order.block.grid is None else order.block.grid
-            write_plan_dxf(lines, steps, site, order.block.title, path, unit=drawn)
+            old = [result.name for result in results if result.stale]
+            note = translate(stale_warning(old), t) if old else ""
+            write_plan_dxf(lines, steps, site, order.block.title, path, unit=drawn, note=note)
             files.append(path)
         elif form == "svg":
             files += write_plan_svg(results, order.block, path, interval=order.interval, paper=order.paper, scale=scale,

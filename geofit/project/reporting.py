@@ -63,7 +63,7 @@ def write_report_files(
         for before, after in zip(results, made.results, strict=True)
         if before.prediction is None and after.prediction is not None and before.surface.model is not None
     }
-    stale = [result.name for result in results if result.stale]
+    stale = [*(result.name for result in results if result.stale), *(part.name for part in parts if part.stale)]
     warnings = (*([stale_warning(stale)] if stale else []), *made.warnings, *failed)
     return ReportFiles(made.files, warnings, new)
 
@@ -80,7 +80,7 @@ def _parts(
         if body is None or volumes is None:
             continue
         tell(progress, message("data.stage-of-name", "{name}: {stage}", name=name, stage="body"), 0.0)
-        part = body_part(replace(body, name=name), volumes, None, horizons, language(code))
+        part = body_part(replace(body, name=name), volumes, None, horizons, language(code), stale=result.stale)
         if isinstance(part, Message):
             failed.append(message("project.body-unreported", "Body {name}: {reason}", name=name, reason=part))
         else:

@@ -32,7 +32,6 @@ from geofit.streaming.kept import clear_kept
 if TYPE_CHECKING:
     from geofit.fitting.horizon_fit import HorizonFit
     from geofit.report.accuracy_report import AccuracyReport
-    from geofit.report.document import Chapter
     from geofit.report.pictures import Pictures
     from geofit.site.fit_site import SiteFit
     from geofit.site.order import Order
@@ -266,8 +265,7 @@ def _write_results(
             with replacing(files.folder / "site.png") as picture:
                 picture.write_bytes(data)
         forms: tuple[Form, ...] = ("html", "json", "pdf") if pdf else ("html", "json")
-        chapters = [part.chapter for part in parts]
-        _write_report(report, whole, images, files.folder, language, font, forms, chapters, notes)
+        _write_report(report, whole, images, files.folder, language, font, forms, parts, notes)
         warnings = [text for text in (font, *warnings, unordered, whole.missing) if text]
     return RunResult(
         files.folder, tuple(results), failures, tuple(warnings), orders, fits.cuts, fits.contradictions, report,
@@ -436,7 +434,7 @@ def write_reports(
         images |= draw_sections(made, sections, language)
     whole, font = draw_site(made, language) if pictured else Pictures({}, None, None), _font_warning(made)
     tell(progress, "report", 0.95)
-    _write_report(report, whole, images, out, language, font, forms, [part.chapter for part in bodies])
+    _write_report(report, whole, images, out, language, font, forms, bodies)
     files = {form: out / f"report.{form}" for form in forms}
     return Reports(files, tuple(text for text in (font, *warnings, unordered, whole.missing) if text), tuple(made))
 
@@ -488,7 +486,7 @@ def _write_report(
     language: Language,
     warning: Message,
     forms: Sequence[Form],
-    bodies: Sequence[Chapter] = (),
+    bodies: Sequence[BodyPart] = (),
     notes: Sequence[Message] = (),
 ) -> None:
     """Write the report in its forms; ``whole`` shows the site, ``images`` its horizons."""
@@ -496,7 +494,11 @@ def _write_report(
     from geofit.report.html import write_html
     from geofit.report.schema import report_document, write_json
 
-    pages = document(report, language, missing_picture=whole.missing, warning=warning, bodies=bodies, notes=notes)
+    chapters, stale = [part.chapter for part in bodies], [part.name for part in bodies if part.stale]
+    pages = document(
+        report, language, missing_picture=whole.missing, warning=warning, bodies=chapters, stale_bodies=stale,
+        notes=notes,
+    )  # fmt: skip
     pictures = {**images, **whole.images}
     if "json" in forms:
         write_json(report_document(report), out / "report.json")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -15,6 +15,7 @@ from geofit.data.prediction import Uncertainty
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.project.staleness import dated_body
 from geofit.report.paper import SheetTitle
 from geofit.report.section_pages import fitting_scale, write_sheet_pdf, write_sheet_svg
 from geofit.site.section_view import TOLERANCE, BodyTrace, SectionView, section_view
@@ -69,11 +70,15 @@ class SheetOrder:
 
 @dataclass(frozen=True, eq=False)
 class SheetBody:
-    """A body for a sheet: triangles in map coordinates, its colour, and the body if it was fitted to data."""
+    """A body for a sheet: triangles in map coordinates, its colour, and the body if it was fitted to data.
+
+    ``stale``: it is older than its data.
+    """
 
     mesh: TriangleMesh
     colour: str
     fitted: BodyFit | None = None
+    stale: bool = False
 
 
 def sheet_bodies(document: Document) -> dict[str, SheetBody]:
@@ -82,10 +87,10 @@ def sheet_bodies(document: Document) -> dict[str, SheetBody]:
 
     found = {}
     for name, record in document.state.bodies.items():
-        result = document.body(name)
+        result = dated_body(document, name)
         if result is not None and record.style.visible:
             mesh = TriangleMesh(result.mesh.vertices + result.body.origin, result.mesh.triangles)
-            found[name] = SheetBody(mesh, record.style.colour, result.fitted)
+            found[name] = SheetBody(mesh, record.style.colour, result.fitted, bool(result.stale))
     return found
 
 
@@ -95,12 +100,14 @@ def write_section_sheet(
     uncertainty: Mapping[str, Uncertainty],
     order: SheetOrder,
     bodies: Mapping[str, SheetBody] | None = None,
+    stale: Collection[str] = (),
     *,
     progress: Progress | None = None,
 ) -> tuple[int, tuple[Path, ...]]:
     """Cut the sections and write the sheet; return its scale, 1 : so many, and the files.
 
-    ``bodies`` are drawn by name with the band of their surface.
+    ``bodies`` are drawn by name with the band of their surface; each sheet names those that are stale, and those of the
+    surfaces that ``stale`` names.
 
     Raises
     ------
@@ -118,7 +125,10 @@ def write_section_sheet(
         tell(progress, "sections", 0.5 + 0.3 * k / len(order.lines))
         found = section_view(site, surfaces, line, order.thickness, name=name, uncertainty=uncertainty, meshes=meshes)
         traces = tuple(_body(called, one, found.line) for called, one in (bodies or {}).items())
-        views.append(replace(found, bodies=tuple(trace for trace in traces if trace.rings)))
+        shown = tuple(trace for trace in traces if trace.rings)
+        old = [name for name, lines in found.traces.items() if lines and name in stale]
+        old += [trace.name for trace in shown if bodies and bodies[trace.name].stale]
+        views.append(replace(found, bodies=shown, stale=tuple(old)))
     tell(progress, "drawing", 0.8)
     files: list[Path] = []
     scale = order.scale or fitting_scale(views, order.paper, order.exaggeration, order.block.unit)
@@ -127,7 +137,10 @@ def write_section_sheet(
         if form == "dxf":
             from geofit.io.export.section_dxf import write_sheet_dxf
 
-            write_sheet_dxf(views, order.block.title, path, exaggeration=order.exaggeration, unit=order.block.unit)
+            write_sheet_dxf(
+                views, order.block.title, path, exaggeration=order.exaggeration, unit=order.block.unit,
+                language=language_of(order.language),
+            )  # fmt: skip
             files.append(path)
         elif form == "svg":
             files += write_sheet_svg(

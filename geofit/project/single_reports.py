@@ -12,6 +12,7 @@ from geofit.data.guard import guarded
 from geofit.data.languages import EN, Language, language
 from geofit.data.messages import Message, message
 from geofit.data.progress import Progress, tell
+from geofit.data.stale import StaleCause
 from geofit.data.title_block import TitleBlock
 
 if TYPE_CHECKING:
@@ -122,12 +123,16 @@ def _findings(
 
 @dataclass(frozen=True)
 class BodyPart:
-    """What a body leaves to the report of its site: a chapter, pictures, whether its sigma is below epsilon."""
+    """What a body leaves to the report of its site: a chapter, pictures, whether its sigma is below epsilon.
+
+    ``stale``: it is older than its data.
+    """
 
     name: str
     chapter: Chapter
     images: Mapping[str, bytes]
     passed: bool
+    stale: bool = False
 
 
 def body_part(
@@ -137,13 +142,15 @@ def body_part(
     horizons: Mapping[str, Any],
     t: Language,
     progress: Progress | None = None,
+    stale: tuple[StaleCause, ...] = (),
 ) -> BodyPart | Message:
     """Lay out the chapter of a body that was fitted already; or return why that failed."""
     from geofit.report.body_chapter import body_chapter
 
     def part() -> BodyPart:
         found, images = _findings(body, volumes, read_back, horizons, t, progress)
-        return BodyPart(body.name, body_chapter(found, t), images, found.accuracy.passed)
+        found = replace(found, stale=stale)
+        return BodyPart(body.name, body_chapter(found, t), images, found.accuracy.passed, bool(stale))
 
     failed: list[Message] = []
     made = guarded(part, None, failed.append)

@@ -127,6 +127,11 @@ def write_step_files(
     return written
 
 
+def certificate_of(path: Path) -> Path:
+    """Return the page that is the certificate of a STEP file."""
+    return path.with_name(f"{path.stem}_certificate.pdf")
+
+
 def certified(
     path: Path,
     found: Mapping[str, ReadBack | SolidReadBack],
@@ -158,7 +163,7 @@ def certified(
         return None
     from geofit.report.certificate import write_certificate
 
-    page = path.with_name(f"{path.stem}_certificate.pdf")
+    page = certificate_of(path)
     write_certificate(
         page, path, found, epsilon, language(by.certificate), author=by.author, organisation=by.organisation,
         offset=tuple(by.offset.tolist()), stale=stale,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from geofit.data.languages import Language, sentence, translate
 from geofit.data.messages import Message, message
+from geofit.data.stale import StaleCause
 from geofit.data.verdict import Verdict as Judged
 from geofit.data.verdict import verdict_of
 from geofit.report import digits
@@ -28,6 +29,7 @@ from geofit.report.document import (
     ReportTable,
 )
 from geofit.report.gather import check_lines
+from geofit.report.stale_blocks import stale_blocks
 
 if TYPE_CHECKING:
     from geofit.bodies.accuracy import BodyAccuracy
@@ -54,7 +56,7 @@ _METHODS = {
 class BodyFindings:
     """Everything that a chapter says of a body; None or empty: not examined, ``missing`` states why.
 
-    ``pictures`` are what was drawn: "view", "section-0" and so on.
+    ``pictures`` are what was drawn: "view", "section-0" and so on. ``stale`` lists what has changed since the fit.
     """
 
     body: BodyFit
@@ -65,6 +67,7 @@ class BodyFindings:
     suggested: tuple[SuggestedHole, ...] = ()
     pictures: tuple[str, ...] = ()
     missing: tuple[Message, ...] = field(default=())
+    stale: tuple[StaleCause, ...] = ()
 
     @property
     def accuracy(self) -> BodyAccuracy:
@@ -87,12 +90,13 @@ def body_picture(what: str, name: str) -> str:
 def body_chapter(found: BodyFindings, t: Language) -> Chapter:
     """Lay out everything about one body."""
     a, name = found.accuracy, found.body.name
-    blocks: list[Block] = [lamps_paragraph(found.verdict.lamps, t), _facts(found, t)]
-    blocks += [Paragraph(sentence(text, t), "warning") for text in found.missing]
+    blocks = [*stale_blocks(name, found.stale, t), lamps_paragraph(found.verdict.lamps, t), _facts(found, t)]
+    blocks += [Paragraph(sentence(text, t), "warning") for text in (*a.warnings, *found.missing)]
     blocks += _pictures(found, t)
     blocks += [*_volumes(found, t), *_logged(a, t), *_checks(found, t), *_left_out(found, t), *_holes(found, t)]
     blocks += _issues(found, t)
-    return Chapter(t("Body {name}", name=name), tuple(blocks), verdict_badge(found.verdict.word, t))
+    badge = verdict_badge(found.verdict.word, t, stale=bool(found.stale))
+    return Chapter(t("Body {name}", name=name), tuple(blocks), badge)
 
 
 def _facts(found: BodyFindings, t: Language) -> Facts:

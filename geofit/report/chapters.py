@@ -41,6 +41,7 @@ def document(
     missing_picture: Message | None = None,
     warning: Message | None = None,
     bodies: Sequence[Chapter] = (),
+    stale_bodies: Sequence[str] = (),
     notes: Sequence[Message] = (),
 ) -> ReportDocument:
     """Lay an accuracy report out as chapters.
@@ -57,6 +58,8 @@ def document(
         Something the reader must know about the report itself, a missing font for one.
     bodies : sequence of Chapter
         Chapters of bodies, which follow those of the horizons.
+    stale_bodies : sequence of str
+        Which bodies are older than their data.
     notes : sequence of Message
         What else the reader must know about the files of the run.
     """
@@ -65,12 +68,12 @@ def document(
     version = "geofit " + report.versions["geofit"]
     facts = ((t("Coordinate system"), report.crs or t("not stated")), (t("Program"), version))
     picture = Paragraph(translate(missing_picture, t), "warning") if missing_picture else Picture(report.picture, "")
-    stale = [horizon.name for horizon in report.horizons if horizon.stale]
+    stale = [*(horizon.name for horizon in report.horizons if horizon.stale), *stale_bodies]
     warnings = [*([warning] if warning else []), *([stale_warning(stale)] if stale else [])]
     drawings = sections_chapter(report, t)
     chapters = [
         cover(title, facts, picture, report.date, t, warnings),
-        _summary(report, notes, t),
+        _summary(report, notes, stale, t),
         *([drawings] if drawings else []),
         *(horizon_chapter(horizon, t, missing_picture) for horizon in report.horizons),
         *bodies,
@@ -92,7 +95,7 @@ def document(
     )
 
 
-def _summary(report: AccuracyReport, notes: Sequence[Message], t: Language) -> Chapter:
+def _summary(report: AccuracyReport, notes: Sequence[Message], stale: Sequence[str], t: Language) -> Chapter:
     blocks: list[Block] = [Heading(t("Verdict"))]
     columns = (
         Column(t("Horizon")),
@@ -121,7 +124,7 @@ def _summary(report: AccuracyReport, notes: Sequence[Message], t: Language) -> C
     for name, reason in report.failures.items():
         blocks.append(Paragraph(t("{name} could not be fitted: {reason}", name=name, reason=reason), "warning"))
     blocks += [Paragraph(sentence(note, t), "warning") for note in notes]
-    blocks += [*away_from_data(report, t), *limits_of_use(report, t)]
+    blocks += [*away_from_data(report, t), *limits_of_use(report, stale, t)]
     return Chapter(t("Summary"), tuple(blocks))
 
 

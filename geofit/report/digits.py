@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from geofit.data.rounding import rounded_metres
+from geofit.data.rounding import GAP, in_groups, rounded_metres
 
 __all__ = [
     "area",
@@ -28,8 +28,6 @@ __all__ = [
 NOTHING = "–"
 #: Below this a distance is the rounding of the computer, not a property of a surface; metres or degrees.
 NOISE = 1e-9
-#: Keeps the groups of thousands on one line.
-_GAP = "\N{NO-BREAK SPACE}"
 _UNITS = {"m": "m", "deg": "°", "degrees": "°", "m2": "m²", "m3": "m³", "1": "", "": ""}
 
 
@@ -50,8 +48,8 @@ def metres(value: float | None) -> str:
     sign = "−" if value < 0 else ""
     size = abs(value)
     if size < NOISE:
-        return f"<{_GAP}1e-9"
-    return sign + (rounded_metres(size) if size < 1 else _grouped(rounded_metres(size)))
+        return f"<{GAP}1e-9"
+    return sign + (rounded_metres(size) if size < 1 else in_groups(rounded_metres(size)))
 
 
 def length(value: float | None) -> str:
@@ -63,7 +61,7 @@ def length(value: float | None) -> str:
     (['0.250', 'm'], '–')
     """
     text = metres(value)
-    return text if text == NOTHING else f"{text}{_GAP}m"
+    return text if text == NOTHING else f"{text}{GAP}m"
 
 
 def equals(value: float | None) -> str:
@@ -75,7 +73,7 @@ def equals(value: float | None) -> str:
     (['=', '0.0301', 'm'], ['<', '1e-9', 'm'])
     """
     text = length(value)
-    return text if text.startswith("<") else f"={_GAP}{text}"
+    return text if text.startswith("<") else f"={GAP}{text}"
 
 
 def degrees(value: float | None) -> str:
@@ -163,7 +161,7 @@ def area(value: float | None) -> str:
 def _measure(value: float | None, unit: str) -> str:
     if value is None or not math.isfinite(value):
         return NOTHING
-    return f"{figure(value)}{_GAP}{unit}"
+    return f"{figure(value)}{GAP}{unit}"
 
 
 def share(value: float | None) -> str:
@@ -174,12 +172,12 @@ def share(value: float | None) -> str:
     >>> share(0.9021).split()
     ['90.2', '%']
     """
-    return NOTHING if value is None or not math.isfinite(value) else f"{100 * value:.1f}{_GAP}%".replace("-", "−")
+    return NOTHING if value is None or not math.isfinite(value) else f"{100 * value:.1f}{GAP}%".replace("-", "−")
 
 
 def kilobytes(value: float) -> str:
     """Write bytes as kilobytes."""
-    return f"{count(value / 1024)}{_GAP}kB"
+    return f"{count(value / 1024)}{GAP}kB"
 
 
 def measured(value: float | None, unit: str) -> str:
@@ -193,11 +191,11 @@ def measured(value: float | None, unit: str) -> str:
     if value is None or not math.isfinite(value):
         return NOTHING
     if unit in ("m", "deg", "°"):
-        return f"{metres(value)}{_GAP}{_UNITS.get(unit, unit)}"
+        return f"{metres(value)}{GAP}{_UNITS.get(unit, unit)}"
     if unit in ("m2", "m3"):
         return _measure(value, _UNITS[unit])
     text = count(value) if float(value).is_integer() else f"{value:.3g}".replace("-", "−")
-    return f"{text}{_GAP}{_UNITS.get(unit, unit)}".rstrip(_GAP)
+    return f"{text}{GAP}{_UNITS.get(unit, unit)}".rstrip(GAP)
 
 
 def typeset(text: str) -> str:
@@ -208,12 +206,4 @@ def typeset(text: str) -> str:
     >>> typeset("-12.50"), typeset("437189.0").split()
     ('−12.50', ['437', '189.0'])
     """
-    return _grouped(text.replace("-", "−"))
-
-
-def _grouped(text: str) -> str:
-    """Part the digits before the point in threes, from five digits on."""
-    whole, point, rest = text.partition(".")
-    if len(whole.lstrip("−")) > 4:
-        whole = f"{int(whole.replace('−', '-')):,}".replace(",", _GAP).replace("-", "−")
-    return whole + point + rest
+    return in_groups(text.replace("-", "−"))

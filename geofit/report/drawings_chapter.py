@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from geofit.data.languages import Language
+from geofit.data.languages import Language, translate
+from geofit.data.stale import stale_warning
 from geofit.report.accuracy_report import AccuracyReport
 from geofit.report.document import Block, Chapter, Heading, Paragraph, Picture
 from geofit.report.section_sheet import section_caption
@@ -23,7 +24,10 @@ def sections_chapter(report: AccuracyReport, t: Language) -> Chapter | None:
             "quiet",
         )
     ]
+    stale = [horizon.name for horizon in report.horizons if horizon.stale]
     for sheet in report.sections:
         blocks.append(Heading(t("Section {name} – {name}′", name=sheet.name)))
+        if stale:
+            blocks.append(Paragraph(translate(stale_warning(stale), t), "warning"))
         blocks.append(Picture(sheet.picture, section_caption(sheet, t), to_scale=True))
     return Chapter(t("Geological sections"), tuple(blocks))

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from geofit.data.lengths import LENGTH_UNITS, LengthUnit, unit_mark
+from geofit.data.rounding import in_groups
 from geofit.report.style import MUTED, PAPER, TEXT
 
 if TYPE_CHECKING:
@@ -48,8 +49,7 @@ def scale_text(scale: int) -> str:
     >>> scale_text(10000).split()
     ['1:10', '000']
     """
-    digits = f"{scale:,}" if scale >= 10_000 else str(scale)
-    return "1:" + digits.replace(",", "\N{NO-BREAK SPACE}")
+    return f"1:{in_groups(str(scale))}"
 
 
 def scale_bar(axes: Axes, scale: int, x: float, y: float, unit: LengthUnit = "m") -> None:

@@ -33,7 +33,7 @@ __all__ = ["horizon_chapter"]
 def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | None = None) -> Chapter:
     """Lay out everything about one horizon."""
     blocks: list[Block] = [
-        *stale_blocks(h, t),
+        *stale_blocks(h.name, h.stale, t),
         lamps_paragraph(h.lamps, t),
         _facts(h, t),
         *_notes(h, t),

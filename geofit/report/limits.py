@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from geofit.data.languages import Language, translate
 from geofit.data.stale import stale_warning
 from geofit.report import digits
@@ -45,8 +47,8 @@ def _expected(off: PredictionReport) -> tuple[str, ...]:
     )
 
 
-def limits_of_use(report: AccuracyReport, t: Language) -> list[Block]:
-    """Lay out the limits of use of a site's surfaces."""
+def limits_of_use(report: AccuracyReport, stale: Sequence[str], t: Language) -> list[Block]:
+    """Lay out the limits of use of a site's surfaces; ``stale`` names surfaces and bodies older than their data."""
     crs = report.crs or t("not stated")
     sentences = [
         t("Elevations and coordinates are metres in the coordinate system: {crs}.", crs=crs),
@@ -79,7 +81,6 @@ def limits_of_use(report: AccuracyReport, t: Language) -> list[Block]:
             "with other data, fit again."
         )
     )
-    stale = [h.name for h in report.horizons if h.stale]
     if stale:
         sentences.append(translate(stale_warning(stale), t))
     return [Heading(t("Limits of use")), *(Paragraph(f"{i}. {text}") for i, text in enumerate(sentences, 1))]

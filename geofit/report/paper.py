@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geofit.data.files import file_stems, replacing
-from geofit.data.languages import Language
+from geofit.data.languages import Language, translate
 from geofit.data.lengths import LENGTH_UNITS, LengthUnit
-from geofit.report.style import MUTED, TEXT, drawing
+from geofit.data.messages import some_of
+from geofit.data.stale import stale_warning
+from geofit.report.style import MUTED, TEXT, WARNING, drawing, shortened, text_width
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,6 +29,7 @@ __all__ = [
     "save_pdf",
     "save_svg",
     "scales_of",
+    "svg_files",
 ]
 
 #: Paper in landscape, millimetres.
@@ -34,8 +37,11 @@ PAPERS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A1": (841.0, 594.0), "A0"
 #: Scales on offer, 1 : so many; where lengths are feet, an inch is 10, 20, 30 ... feet.
 SCALES = (100, 200, 250, 500, 1000, 2000, 2500, 5000, 10_000, 20_000, 25_000, 50_000, 100_000)
 SCALES_FEET = (120, 240, 360, 480, 600, 1200, 2400, 3600, 4800, 6000, 12_000, 24_000, 36_000, 60_000, 120_000)
-#: Millimetres: frame from the paper's edge, title block.
+#: Millimetres: frame from the paper's edge, title block; its cells, above which a warning has its own.
 EDGE, BLOCK = 10.0, 24.0
+CELLS = BLOCK - 8.0
+#: Points of the warning.
+_STALE_SIZE = 8.0
 #: Lines of the patterns, and letters of the PDF as text.
 _THIN: dict[Any, Any] = {"hatch.linewidth": 0.25, "pdf.fonttype": 42}
 
@@ -81,12 +87,13 @@ def drawing_scale(scale: int, unit: LengthUnit) -> str:
 
 
 def framed_page(
-    paper: str, block: SheetTitle, name: str, line: str, scale: str, sheet: tuple[int, int], t: Language
-) -> Figure:
+    paper: str, block: SheetTitle, name: str, line: str, scale: str, sheet: tuple[int, int], t: Language,
+    stale: Sequence[str] = (),
+) -> Figure:  # fmt: skip
     """Return a page with frame, title and title block.
 
     ``name`` follows the title over the drawing, ``line`` is the small line below them; ``scale`` as it is printed;
-    ``sheet`` is the number of the page and of all pages.
+    ``sheet`` is the number of the page and of all pages; ``stale`` names what is drawn and is older than its data.
     """
     from matplotlib.figure import Figure
     from matplotlib.patches import Rectangle
@@ -114,11 +121,27 @@ def framed_page(
     )
     at, width = EDGE, wide - 2 * EDGE
     for word, value, share in cells:
-        box(at, EDGE, share * width, BLOCK - 8)
+        box(at, EDGE, share * width, CELLS)
         figure.text((at + 2) / wide, (EDGE + BLOCK - 12) / high, word, size=6, color=MUTED)
         figure.text((at + 2) / wide, (EDGE + 4) / high, value, size=8.5, color=TEXT)
         at += share * width
+    if stale:
+        box(EDGE, EDGE + CELLS, width, BLOCK - CELLS - 1)
+        text = _stale_line(stale, width - 6, t)
+        figure.text(
+            (EDGE + 2) / wide, (EDGE + CELLS + 2.4) / high, text, size=_STALE_SIZE, weight="bold", color=WARNING
+        )
     return figure
+
+
+def _stale_line(names: Sequence[str], room: float, t: Language) -> str:
+    """Return the warning of what is older than its data, with as many names as fit on a line (mm)."""
+    short, text = [shortened(name) for name in names], ""
+    for most in range(len(short), 0, -1):
+        text = translate(stale_warning(some_of(short, most)), t)
+        if text_width(text, _STALE_SIZE) <= room:
+            break
+    return text
 
 
 def save_pdf(pages: Iterable[Callable[[], Figure]], title: str, path: str | PathLike[str]) -> None:
@@ -138,13 +161,18 @@ def save_svg(
     """Write pages as SVG, one file each; several get their names. Return the files."""
     import matplotlib as mpl
 
-    path, files = Path(path), []
-    stems = file_stems([name or str(k) for k, name in enumerate(names, 1)])
+    files = svg_files(names, Path(path))
     with drawing(8.0), mpl.rc_context({**_THIN, "svg.hashsalt": "geofit", "svg.fonttype": "path"}):
-        for page, stem in zip(pages, stems.values(), strict=True):
-            file = path if len(names) == 1 else path.with_name(f"{path.stem}_{stem}{path.suffix}")
+        for page, file in zip(pages, files, strict=True):
             figure = page()
             with replacing(file) as part:
                 figure.savefig(part, format="svg", metadata={"Date": None})
-            files.append(file)
-    return tuple(files)
+    return files
+
+
+def svg_files(names: Sequence[str], path: Path) -> tuple[Path, ...]:
+    """Return the files that :func:`save_svg` writes."""
+    if len(names) == 1:
+        return (path,)
+    stems = file_stems([name or str(k) for k, name in enumerate(names, 1)])
+    return tuple(path.with_name(f"{path.stem}_{stem}{path.suffix}") for stem in stems.values())

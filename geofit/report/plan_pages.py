@@ -178,7 +178,8 @@ def _page(
         line = t("elevations in feet, contours every {interval:g} ft, each fifth heavy", interval=every)
     if result.site.crs:
         line = t("{first}; {second}", first=line, second=result.site.crs)
-    figure = framed_page(paper, block, result.name, line, drawing_scale(scale, block.unit), sheet, t)
+    stale = [result.name] if result.stale else []
+    figure = framed_page(paper, block, result.name, line, drawing_scale(scale, block.unit), sheet, t, stale)
     low, top = map_corners(result)
     across, up = (1000 * (top - low) / scale).tolist()
     left = EDGE + LEFT + (wide - 2 * EDGE - LEFT - LEGEND - across) / 2

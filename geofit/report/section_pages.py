@@ -214,8 +214,9 @@ def sheet_page(
     true = t("true to scale") if exaggeration == 1 else t("elevations {factor:g} times higher", factor=exaggeration)
     wide, high = PAPERS[paper]
     figure = framed_page(
-        paper, block, view.name, line, f"{drawing_scale(scale, block.unit)} · {true}", (number, len(views)), t
-    )
+        paper, block, view.name, line, f"{drawing_scale(scale, block.unit)} · {true}", (number, len(views)), t,
+        view.stale,
+    )  # fmt: skip
     room_wide, room_high = _room(paper)
     across, up = _size(view, scale, exaggeration)
     bottom = EDGE + BLOCK + BELOW + max((room_high - up) / 2, 0)
@@ -340,4 +341,6 @@ def _legend(
             handles.append(Patch(fc=colour, ec=TEXT, lw=0.3, hatch=hatch))
             labels.append(code)
     corner = ((wide - EDGE - LEGEND) / wide, (high - EDGE - 14) / high)
-    figure.legend(handles, labels, loc="upper left", bbox_to_anchor=corner, fontsize=6.5, borderaxespad=0)
+    legend = figure.legend(handles, labels, loc="upper left", bbox_to_anchor=corner, fontsize=6.5, borderaxespad=0)
+    for text in legend.get_texts():
+        text.set_linespacing(1.5)  # Chinese letters are as high as their line

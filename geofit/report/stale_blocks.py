@@ -1,13 +1,12 @@
-"""What a report says of a surface that was fitted to earlier data or settings."""
+"""What a report says of a surface or a body that was fitted to earlier data or settings."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from geofit.data.languages import Language, translate
-from geofit.data.setting_texts import SETTINGS
 from geofit.data.stale import StaleCause, stale_warning
-from geofit.report.accuracy_report import HorizonReport
 from geofit.report.annex import setting_value
 from geofit.report.digits import count
 from geofit.report.document import Block, Column, Paragraph, ReportTable
@@ -18,34 +17,20 @@ __all__ = ["stale_blocks"]
 MOST = 4
 
 
-def stale_blocks(h: HorizonReport, t: Language) -> list[Block]:
-    """Lay out the warning and what has changed since the fit; nothing where the surface is not stale."""
-    if not h.stale:
+def stale_blocks(name: str, stale: Sequence[StaleCause], t: Language) -> list[Block]:
+    """Lay out the warning and what has changed since the fit; nothing where nothing has."""
+    if not stale:
         return []
     columns = (Column(t("Changed since the fit"), "wide"), Column(""), Column(t("Value"), "hash"))
     rows = tuple(
         row
-        for one in h.stale
+        for one in stale
         for row in (
-            (_what(one, t), t("at the fit"), _value(one, one.fitted, t)),
+            (translate(one.text, t), t("at the fit"), _value(one, one.fitted, t)),
             ("", t("now"), _value(one, one.now, t)),
         )
     )
-    return [Paragraph(translate(stale_warning([h.name]), t), "warning"), ReportTable(columns, rows)]
-
-
-def _what(cause: StaleCause, t: Language) -> str:
-    match cause.kind:
-        case "data":
-            return t("Data of the horizon: points, study area, ground, dips")
-        case "file":
-            return f"{cause.name}, SHA-256"
-        case "setting":
-            return translate(SETTINGS[cause.name].with_unit(), t)
-        case "excluded":
-            return t("Excluded points")
-        case "faults":
-            return t("Faults that cut the horizon")
+    return [Paragraph(translate(stale_warning([name]), t), "warning"), ReportTable(columns, rows)]
 
 
 def _value(cause: StaleCause, value: Any, t: Language) -> str:

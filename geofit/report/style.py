@@ -104,8 +104,19 @@ def legend_columns(labels: Iterable[str], room: float, size: float, most: int) -
     >>> [legend_columns([name], 155.0, 6.5, 5) for name in ("T1", "x" * 28, "风化" * 14)]
     [5, 3, 1]
     """
-    letters = max((sum(1 + (ord(c) > 0x2E80) for c in label) for label in labels), default=1)
-    return int(min(max(room / (0.55 * size * 0.3528 * letters + 9.0), 1), most))
+    widest = max((text_width(label, size) for label in labels), default=text_width(" ", size))
+    return int(min(max(room / (widest + 9.0), 1), most))
+
+
+def text_width(text: str, size: float) -> float:
+    """Return about how wide a text is (mm) in type of a size (points); Chinese letters are twice as wide.
+
+    Examples
+    --------
+    >>> round(text_width("T1", 10.0), 2), round(text_width("风化", 10.0), 2)
+    (3.88, 7.76)
+    """
+    return 0.55 * size * 0.3528 * sum(1 + (ord(letter) > 0x2E80) for letter in text)
 
 
 @dataclass(frozen=True)

@@ -90,6 +90,7 @@ class SectionView:
     """A section along ``line`` (k, 2), map coordinates; everything else over the distance along it, metres.
 
     ``bends`` are the distances of the corners; ``points`` by horizon (n, 2), those within half of the ``thickness``.
+    ``stale`` names the surfaces and bodies that are shown and are older than their data.
     """
 
     name: str
@@ -101,6 +102,7 @@ class SectionView:
     holes: tuple[HoleTrack, ...]
     points: Mapping[str, Floats]
     bodies: tuple[BodyTrace, ...] = ()
+    stale: tuple[str, ...] = ()
 
     @property
     def length(self) -> float:

@@ -36,9 +36,9 @@ from geofit.gui.dialogs.step_fields import SignedFields
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.marks import icon, level_mark, verdict_mark
 from geofit.gui.panels.tables import DataTable, TableColumn
-from geofit.gui.save_file import ask_save_file
+from geofit.gui.save_file import ask_save_file, may_replace
 from geofit.gui.translate import translated
-from geofit.project.step_files import StepFile, step_paths, write_step_files
+from geofit.project.step_files import StepFile, certificate_of, step_paths, write_step_files
 from geofit.report import digits
 
 __all__ = ["ExportDialog"]
@@ -69,6 +69,8 @@ class ExportDialog(TaskDialog):
         # The patches are all that a file holds; what stands behind them need not travel to the other process.
         self._surfaces = {name: surface.with_(model=None) for name, surface in surfaces.items()}
         self.files: list[StepFile] = []
+        #: The file that was agreed to be replaced when it was chosen.
+        self._agreed: Path | None = None
         self.horizons = self._list()
         self.target = QLineEdit(str((folder or Path(str(QSettings().value(_FOLDER, "")))) / self._proposed()))
         self.unit = QComboBox()
@@ -168,6 +170,7 @@ class ExportDialog(TaskDialog):
     def _browse(self) -> None:
         chosen = ask_save_file(self, self.windowTitle(), self.target.text(), self.tr("STEP files (*.step *.stp)"))
         if chosen is not None:
+            self._agreed = chosen[0]
             self.target.setText(str(chosen[0]))
 
     def _path(self) -> Path:
@@ -177,11 +180,14 @@ class ExportDialog(TaskDialog):
     def _write(self) -> None:
         names = self.chosen()
         surfaces = {name: self._surfaces[name] for name in names}
-        self.files = []
+        unit, separate, signed = self.unit.currentData(), self.apart.isChecked(), self.stated.signed()
+        work = (surfaces, self._path(), unit, separate, signed, self._stale)
+        paths = list(step_paths(names, work[1], separate=separate))
+        written = [*paths, *(map(certificate_of, paths) if signed.certificate else ())]
+        if not may_replace([file for file in written if file != self._agreed], self.windowTitle(), self):
+            return
+        self.files, self._agreed = [], None
         self.say(self.tr("Writing, and reading back what was written…"))
-        unit, separate = self.unit.currentData(), self.apart.isChecked()
-        work = (surfaces, self._path(), unit, separate, self.stated.signed(), self._stale)
-        paths = list(step_paths(names, work[1], separate=work[3]))
         self.begin(write_step_files, *work, on_done=self.show_files, on_stopped=partial(self._stopped, paths))
 
     def show_files(self, files: list[StepFile]) -> None:

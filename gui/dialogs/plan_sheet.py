@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from PySide6.QtWidgets import QComboBox, QWidget
 
 from geofit.data.site import Site
+from geofit.data.stale import StaleCause
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.dialogs.sheet import LengthField, SheetDialog
 from geofit.gui.translate import user_language
@@ -27,8 +28,10 @@ class PlanSheetDialog(SheetDialog):
         chosen: str | None,
         folder: Path,
         parent: QWidget | None = None,
+        stale: Mapping[str, tuple[StaleCause, ...]] | None = None,
     ) -> None:
         super().__init__(site, "", folder / "plan", parent)
+        self._stale = {name: causes for name, causes in (stale or {}).items() if causes}
         self.setWindowTitle(self.tr("Contour plan"))
         self.title_line.setText(self.tr("Contour plan"))
         self.drawing = self.tr("Drawing the contours…")
@@ -47,7 +50,9 @@ class PlanSheetDialog(SheetDialog):
         self.interval.setSpecialValueText(self.tr("Automatic"))
         self.interval.setToolTip(self.tr("Distance between contours; 0 chooses 1, 2 or 5 times a power of ten"))
         self.lay_out(((self.tr("&Horizon"), self.which), (self.tr("C&ontours every"), self.interval)))
-        self.say(self.tr("Heights, holes with names, study area, scale bar, north arrow; every fifth contour heavy."))
+        self.hint = self.tr("Heights, holes with names, study area, scale bar, north arrow; every fifth contour heavy.")
+        self.which.currentIndexChanged.connect(self.show_hint)
+        self.show_hint()
         self.refresh()
 
     def order(self) -> PlanOrder:
@@ -65,7 +70,16 @@ class PlanSheetDialog(SheetDialog):
 
     def work(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
         """Return what writes the plans."""
-        return write_plan_sheet, (self._site, self._surfaces, self.order())
+        return write_plan_sheet, (self._site, self._surfaces, self.order(), self._stale)
+
+    def sheets(self) -> Sequence[str]:
+        """Return the horizons of the plans."""
+        horizons: tuple[str, ...] = self.which.currentData()
+        return horizons
+
+    def stale(self) -> list[str]:
+        """Return the chosen horizons that are older than their data."""
+        return [name for name in self.which.currentData() or () if name in self._stale]
 
     def refresh(self) -> None:
         """Enable what can be done."""

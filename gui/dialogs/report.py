@@ -91,18 +91,20 @@ class ReportDialog(TaskDialog):
         self._lay_out(site)
         self.go.clicked.connect(self._write)
         self.view.clicked.connect(self.open_result)
-        titles = [
-            self.tr("{name} (stale)").format(name=result.name) if result.stale else result.name
-            for result in self._results
-        ]
-        words = self.tr("Horizons: {names}").format(names=", ".join(titles))
-        if self._bodies:
-            words += " · " + self.tr("Bodies: {names}").format(names=", ".join(self._bodies))
-        stale = [result.name for result in self._results if result.stale]
+        horizons, bodies = {result.name: result for result in self._results}, self._bodies
+        words = self.tr("Horizons: {names}").format(names=self._titles(horizons))
+        if bodies:
+            words += " · " + self.tr("Bodies: {names}").format(names=self._titles(bodies))
+        stale = [name for of in (horizons, bodies) for name, result in of.items() if result.stale]
         if stale:
             words += f"\n{translated(stale_warning(stale))}"
         self.say(words, "stale" if stale else "report")
         self.refresh()
+
+    def _titles(self, results: Mapping[str, HorizonResult] | Mapping[str, BodyResult]) -> str:
+        """Return the names of what goes into the report, those that are stale marked."""
+        stale = self.tr("{name} (stale)")
+        return ", ".join(stale.format(name=name) if result.stale else name for name, result in results.items())
 
     def open_result(self) -> None:
         """Open what was written, in the program that the system has for it."""

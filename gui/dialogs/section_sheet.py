@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -38,8 +38,10 @@ class SectionSheetDialog(SheetDialog):
         bodies: Mapping[str, SheetBody],
         folder: Path,
         parent: QWidget | None = None,
+        stale: Collection[str] = (),
     ) -> None:
         super().__init__(site, "", folder / "sections", parent)
+        self._stale = stale
         self.setWindowTitle(self.tr("Section sheet"))
         self.title_line.setText(self.tr("Geological section"))
         self.drawing = self.tr("Cutting and drawing the sections…")
@@ -69,7 +71,10 @@ class SectionSheetDialog(SheetDialog):
             ((self.tr("&Height"), self.factor),),
         )
         self.which.currentIndexChanged.connect(self.refresh)
-        self.say(self.tr("Each section is drawn to scale: holes with lithology, horizons and bodies with their bands."))
+        self.hint = self.tr(
+            "Each section is drawn to scale: holes with lithology, horizons and bodies with their bands."
+        )
+        self.show_hint()
         self.refresh()
 
     def lines(self) -> Mapping[str, Floats]:
@@ -97,7 +102,17 @@ class SectionSheetDialog(SheetDialog):
 
     def work(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
         """Return what writes the sections."""
-        return write_section_sheet, (self._site, self._surfaces, self._uncertainty, self.order(), self._bodies)
+        work = (self._site, self._surfaces, self._uncertainty, self.order(), self._bodies, self._stale)
+        return write_section_sheet, work
+
+    def sheets(self) -> Sequence[str]:
+        """Return the names of the sections."""
+        return list(self.lines())
+
+    def stale(self) -> list[str]:
+        """Return the surfaces and bodies that are older than their data."""
+        old = [name for name in self._surfaces if name in self._stale]
+        return [*old, *(name for name, body in self._bodies.items() if body.stale)]
 
     def refresh(self) -> None:
         """Enable what can be done."""

@@ -24,12 +24,13 @@ from PySide6.QtWidgets import (
 
 from geofit.data.errors import GeofitError
 from geofit.data.site import Site
+from geofit.data.stale import stale_warning
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.lengths import coordinate_unit, length_mark, length_unit, metres_shown, shown_length
-from geofit.gui.save_file import ask_save_file
-from geofit.gui.translate import failure
+from geofit.gui.save_file import ask_save_file, may_replace
+from geofit.gui.translate import failure, translated
 from geofit.project.section_sheet import SheetForm
-from geofit.report.paper import PAPERS, SheetTitle, drawing_scale, scales_of
+from geofit.report.paper import PAPERS, SheetTitle, drawing_scale, scales_of, svg_files
 
 __all__ = ["LengthField", "SheetDialog"]
 
@@ -40,13 +41,15 @@ Row = tuple[str, QWidget]
 class SheetDialog(TaskDialog):
     """Asks for a drawing and writes it in a process of its own; ``files`` holds what was written last."""
 
-    #: What is said while the drawing is made.
-    drawing = ""
+    #: What is said before the drawing is made, and while it is.
+    hint = drawing = ""
 
     def __init__(self, site: Site, title: str, target: Path, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._site = site
         self.files: tuple[Path, ...] = ()
+        #: The file that was agreed to be replaced when it was chosen.
+        self._agreed: Path | None = None
         self.paper, self.scale = QComboBox(), QComboBox()
         self.paper.addItems(list(PAPERS))
         self.paper.setCurrentText("A3")
@@ -67,6 +70,18 @@ class SheetDialog(TaskDialog):
     @abstractmethod
     def work(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
         """Return what writes the drawing, with its arguments; GeofitError where a number does not fit."""
+
+    @abstractmethod
+    def sheets(self) -> Sequence[str]:
+        """Return the names of the sheets."""
+
+    @abstractmethod
+    def stale(self) -> list[str]:
+        """Return the names of what is drawn and is older than its data."""
+
+    def show_hint(self) -> None:
+        """Say what will be drawn."""
+        self._tell(self.hint)
 
     def title_block(self) -> SheetTitle:
         """Return what the title block says."""
@@ -135,6 +150,7 @@ class SheetDialog(TaskDialog):
         kinds = ";;".join(f"{form.upper()} (*.{form})" for form in self.wanted() or self.forms)
         chosen = ask_save_file(self, self.windowTitle(), self.target.text(), kinds)
         if chosen is not None:
+            self._agreed = chosen[0]
             self.target.setText(str(chosen[0]))
 
     def _open_folder(self) -> None:
@@ -147,15 +163,30 @@ class SheetDialog(TaskDialog):
         except GeofitError as error:
             self.say(failure(error), "failed")
             return
-        self.files = ()
+        if not may_replace([file for file in self._targets() if file != self._agreed], self.windowTitle(), self):
+            return
+        self.files, self._agreed = (), None
         self.say(self.drawing)
         stopped = partial(self.say, self.tr("Stopped. No unfinished file was left."))
         self.begin(function, *arguments, on_done=self._written, on_stopped=stopped)
 
+    def _targets(self) -> list[Path]:
+        stem = self.path()
+        files: list[Path] = []
+        for form in self.wanted():
+            path = stem.with_name(f"{stem.name}.{form}")
+            files += svg_files(self.sheets(), path) if form == "svg" else [path]
+        return files
+
     def _written(self, made: tuple[int, tuple[Path, ...]]) -> None:
         scale, self.files = made
         names = ", ".join(str(file.resolve()) for file in self.files)
-        self.say(self.tr("Wrote {names} at 1:{scale}.").format(names=names, scale=scale), "passed")
+        self._tell(self.tr("Wrote {names} at 1:{scale}.").format(names=names, scale=scale), "passed")
+
+    def _tell(self, text: str, mark: str = "none") -> None:
+        """Say something, and what is older than its data."""
+        old = self.stale()
+        self.say(f"{text}\n{translated(stale_warning(old))}" if old else text, "stale" if old else mark)
 
 
 class LengthField(QDoubleSpinBox):

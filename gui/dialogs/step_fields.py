@@ -14,15 +14,18 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QLineEdit,
+    QStyle,
     QVBoxLayout,
     QWidget,
 )
 
 from geofit.data.columns import LARGEST
 from geofit.data.site import Site
+from geofit.data.stale import stale_warning
 from geofit.data.title_block import TitleBlock
+from geofit.gui.panels.marks import icon
 from geofit.gui.theme import missing_chinese
-from geofit.gui.translate import user_language
+from geofit.gui.translate import translated, user_language
 from geofit.project.step_files import Signed
 
 if TYPE_CHECKING:
@@ -135,20 +138,30 @@ class SignedFields:
 
 
 class BodyStepDialog(QDialog):
-    """Asks what the STEP file of a body states; ``fields`` hold the answers."""
+    """Asks what the STEP file of a body states; ``fields`` hold the answers, ``warning`` is shown of a stale body."""
 
-    def __init__(self, name: str, site: Site, parent: QWidget | None = None) -> None:
+    def __init__(self, name: str, site: Site, parent: QWidget | None = None, *, stale: bool = False) -> None:
         super().__init__(parent)
         self.setWindowTitle(self.tr("Export body {name}").format(name=name))
         self.fields = SignedFields(self, site.title, site.datum)
         form = QFormLayout()
         self.fields.add_to(form)
+        self.warning = QLabel(translated(stale_warning([name])))
+        self.warning.setWordWrap(True)
+        mark = QLabel()
+        mark.setPixmap(icon("stale").pixmap(self.style().pixelMetric(QStyle.PixelMetric.PM_SmallIconSize)))
+        warned = QHBoxLayout()
+        warned.addWidget(mark)
+        warned.addWidget(self.warning, 1)
+        for widget in (mark, self.warning):
+            widget.setVisible(stale)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel)
         self.go = buttons.addButton(self.tr("&Write"), QDialogButtonBox.ButtonRole.AcceptRole)
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
         layout = QVBoxLayout(self)
         layout.addLayout(form)
+        layout.addLayout(warned)
         layout.addWidget(buttons)
         self.fields.certificate.setEnabled(not self.fields.no_page)
         for changed in (self.fields.origin.datum.textChanged, self.fields.origin.choice.currentIndexChanged):

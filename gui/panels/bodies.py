@@ -31,6 +31,7 @@ from geofit.gui.panels.marks import icon
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.settings_form import SettingsForm, scrolling
 from geofit.gui.panels.verdict import VerdictBadge
+from geofit.gui.translate import translated
 from geofit.project.body_record import FITTED, BetweenHorizons, BodyProvenance, ClosedMesh, MorphFrame
 
 __all__ = ["BodiesPanel", "BodyShown"]
@@ -40,7 +41,10 @@ FIRST = ("epsilon", "step", "closed", "reach")
 
 
 class BodyShown:
-    """What the panel shows of one body: what it is made from, its verdict, and what is to be said of it."""
+    """What the panel shows of one body: what it is made from, its verdict, and what is to be said of it.
+
+    ``old`` is why it is to be fitted again, empty if it is not; ``origin`` how it came here.
+    """
 
     def __init__(
         self,
@@ -49,11 +53,11 @@ class BodyShown:
         verdict: Verdict | None = None,
         *,
         waiting: bool = False,
-        stale: bool = False,
+        old: str = "",
         origin: str = "",
     ) -> None:
         self.provenance, self.accuracy, self.verdict = provenance, accuracy, verdict
-        self.waiting, self.stale, self.origin = waiting, stale, origin
+        self.waiting, self.old, self.origin = waiting, old, origin
 
 
 class BodiesPanel(QWidget):
@@ -93,6 +97,8 @@ class BodiesPanel(QWidget):
         menu.addAction(self.tr("Delete")).triggered.connect(lambda: self.delete_requested.emit(self.name))
         self.more.setMenu(menu)
         self.badge, self.banner, self.origin = VerdictBadge(), Banner(), QLabel()
+        #: What limits the use of the body, whatever its verdict.
+        self.warning = Banner("warning")
         self.origin.setWordWrap(True)
         self.title = QLineEdit()
         self.title.setPlaceholderText(self.tr("Name, by default its codes"))
@@ -152,7 +158,8 @@ class BodiesPanel(QWidget):
         judged = shown is None or isinstance(shown.provenance.source, FITTED)
         self.badge.setVisible(shown is not None and judged)
         if shown is not None:
-            self.badge.show_accuracy(accuracy, shown.stale, shown.verdict, shown.waiting)
+            self.badge.show_accuracy(accuracy, bool(shown.old), shown.verdict, shown.waiting)
+        self.warning.show_text("" if accuracy is None else "\n".join(map(translated, accuracy.warnings)))
         self.form.setVisible(judged and not isinstance(self.source.source(), ClosedMesh | BetweenHorizons | MorphFrame))
         self.origin.setText("" if shown is None else shown.origin)
         self.origin.setVisible(bool(self.origin.text()))
@@ -218,7 +225,7 @@ class BodiesPanel(QWidget):
         outer.setContentsMargins(0, 8, 0, 8)
         outer.setSpacing(6)
         outer.addLayout(head)
-        for said in (self.badge, self.origin, self.banner):
+        for said in (self.badge, self.origin, self.warning, self.banner):
             row = QHBoxLayout()
             row.setContentsMargins(8, 0, 8, 0)
             row.addWidget(said)
@@ -251,9 +258,9 @@ class BodiesPanel(QWidget):
             if self._shown is None and source is None
             else self.tr("Not fitted with these settings yet: press Fit.")
             if changed
-            else self.tr("The data have changed since this body was made: press Fit.")
-            if self._shown is not None and self._shown.stale
             else ""
+            if self._shown is None
+            else self._shown.old
         )
 
     def _waiting(self) -> bool:

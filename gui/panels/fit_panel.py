@@ -165,9 +165,9 @@ class FitPanel(QWidget):
 
 
 class Banner(QFrame):
-    """A line with a warning mark."""
+    """A line with a mark, by default that of what is stale."""
 
-    def __init__(self) -> None:
+    def __init__(self, mark: str = "stale") -> None:
         super().__init__()
         self.setFrameShape(QFrame.Shape.StyledPanel)
         self._mark, self._label = QLabel(), QLabel()
@@ -177,7 +177,7 @@ class Banner(QFrame):
         row.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
         row.addWidget(self._label, 1)
         size = self.style().pixelMetric(QStyle.PixelMetric.PM_SmallIconSize)
-        self._mark.setPixmap(icon("stale").pixmap(size))
+        self._mark.setPixmap(icon(mark).pixmap(size))
         self.hide()
 
     @property

@@ -167,6 +167,9 @@ def _body(painter: QPainter, box: QRectF, name: str) -> None:
     painter.drawPath(lump)
     if mark and mark[0]:
         corner = QRectF(box.left() + 0.45 * side, box.top() + 0.45 * side, 0.58 * side, 0.58 * side)
+        # The mark of a stale body is an open ring: over the body's own colour it would not be seen.
+        painter.setBrush(QColor("white"))
+        painter.drawEllipse(corner)
         paint(painter, corner, mark[0])
 
 

@@ -130,11 +130,12 @@ class PredictionPanel(QWidget):
         lines = []
         sd = prediction.uncertainty
         if sd is not None:
-            lines.append(
-                self.tr("Standard deviation of the surface: {mean:.2f} m on average, {most:.2f} m at most.").format(
-                    mean=sd.mean, most=sd.max
-                )
+            words = (
+                self.tr("Standard deviation over the study area: {mean:.2f} m on average, {most:.2f} m at most.")
+                if sd.frame == "map"
+                else self.tr("Standard deviation within its points: {mean:.2f} m on average, {most:.2f} m at most.")
             )
+            lines.append(words.format(mean=sd.mean, most=sd.max))
             words = (
                 self.tr(
                     "Widened by a factor of {factor:.2f}, so that 90 % of the left-out points lie in the 90 % band."

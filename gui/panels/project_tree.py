@@ -40,13 +40,17 @@ _Given = tuple[Site | None, Mapping[str, HorizonFit], Container[str], Mapping[st
 
 @dataclass(frozen=True)
 class TreeBody:
-    """A body as the tree shows it: ``mark`` of its colour and verdict, whether it is drawn, how many contacts."""
+    """A body as the tree shows it: ``mark`` of its colour and verdict, whether it is drawn, how many contacts.
+
+    ``stale``: it is older than its data.
+    """
 
     name: str
     mark: str
     visible: bool
     count: int | None = None
     words: str = ""
+    stale: bool = False
 
 
 class ProjectTree(QWidget):
@@ -305,7 +309,10 @@ class ProjectTree(QWidget):
         return row
 
     def _body(self, body: TreeBody) -> TreeRow:
-        return TreeRow(body.name, ("body", body.name), body.count, icon(body.mark), body.words, checked=body.visible)
+        title = self.tr("{name} (stale)").format(name=body.name) if body.stale else body.name
+        return TreeRow(
+            title, ("body", body.name), body.count, icon(body.mark), body.words, checked=body.visible, italic=body.stale
+        )
 
     def _checked(self, row: TreeRow, on: bool) -> None:
         if row.target[0] == "body":

@@ -85,18 +85,26 @@ def legible_on(colour: str, dark: bool) -> str:
     return f"#{round(255 * r):02x}{round(255 * g):02x}{round(255 * b):02x}"
 
 
-def ramp(by: str, values: Floats) -> Ramp:
-    """Return the colours for values (nan left out); the ends are at their least and largest."""
+def ramp(by: str, values: Floats, most: float | None = None) -> Ramp:
+    """Return the colours for values (nan left out); the ends are at their least and largest.
+
+    With ``most`` the upper end is there, and what is larger has its colour.
+    """
     known = values[np.isfinite(values)]
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
     if by == "standard deviation":
         low = 0.0
+    beyond = most is not None and high > most
+    high = high if most is None else most
     high = max(high, low + 1e-3)
     stops = np.array([rgb(c) for c in RAMPS[by]], float)
     share = np.linspace(0, len(stops) - 1, STEPS)
     table = np.stack([np.interp(share, np.arange(len(stops)), stops[:, k]) for k in range(3)], axis=1)
     return Ramp(
-        np.round(table).astype(np.uint8), low, high, length_legend(Legend(by, UNITS[by], (), RAMPS[by], low, high))
+        np.round(table).astype(np.uint8),
+        low,
+        high,
+        length_legend(Legend(by, UNITS[by], (), RAMPS[by], low, high, beyond)),
     )
 
 

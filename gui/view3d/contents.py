@@ -135,6 +135,7 @@ class Contents:
                 look,
                 self.drawn[name].supported if self.faded else None,
                 self._cut.get(name),
+                self.drawn[name].largest_sd if layer.colour_by == "standard deviation" else None,
             ),
         )
         for kind, bound in (("upper", drawn.upper), ("lower", drawn.lower)):

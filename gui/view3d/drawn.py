@@ -29,6 +29,8 @@ BAND = 1.6449
 class Drawn:
     """A surface as triangles; ``sd`` at the vertices of the fine and the coarse ones, metres, and the 90 % bounds.
 
+    ``largest_sd`` is the figure of panels and reports: the largest in the grid over the study area, or over the hull of
+    the points of a steep or folded surface. Vertices that the grid does not reach, on the border, can have more.
     ``supported`` names which triangles, fine and coarse, lie below the ground and within the hull of the points.
     ``sight`` is the view that it was made for; None: any.
     """
@@ -39,6 +41,7 @@ class Drawn:
     lower: Shape | None = None
     supported: tuple[Bools, Bools] | None = None
     sight: Sight | None = None
+    largest_sd: float | None = None
 
 
 def drawn_of(
@@ -70,7 +73,7 @@ def drawn_of(
     else:
         fine, few = (prediction_sd(surface, uncertainty, one.xyz) for one in (shape, coarse))
         upper, lower = (shape_of(bound) for bound in band(surface, uncertainty))
-    return Drawn(shape, (fine, few), upper, lower, held, sight)
+    return Drawn(shape, (fine, few), upper, lower, held, sight, uncertainty.max)
 
 
 def _supported(surface: HorizonFit, ground: Ground | None, shape: Shape) -> Bools:

@@ -83,15 +83,17 @@ def shape_item(
     look: Look,
     supported: tuple[Bools, Bools] | None = None,
     cut: MovedRegion | None = None,
+    most: float | None = None,
 ) -> Item:
     """Return triangles coloured by a value at their corners (fine, coarse), or plain; isolines if wanted.
 
+    ``most`` is the value at the end of the colours; None: the largest.
     Triangles that are not ``supported`` (fine, coarse) are drawn translucent; None: all are. What a control point moves
     just now is ``cut`` out.
     """
     coarse = shape.coarse or shape if cut is None else shape
     details = (("both", shape, 0),) if coarse is shape else (("full", shape, 0), ("coarse", coarse, 1))
-    made = ramp(layer.colour_by, values[0]) if values is not None else None
+    made = ramp(layer.colour_by, values[0], most) if values is not None else None
     parts = []
     for detail, one, k in details:
         held = np.ones(len(one.triangles), bool) if supported is None else supported[k]

@@ -26,6 +26,7 @@ class Legend:
     """What the colours of a layer mean: single colours, or a ramp from ``low`` to ``high`` in ``unit``.
 
     ``title`` is a way of colouring (see Layer.colour_by). ``count`` is how many points each swatch represents.
+    ``beyond``: something drawn is larger than ``high``.
     """
 
     title: str
@@ -34,6 +35,7 @@ class Legend:
     ramp: tuple[str, ...] = ()
     low: float = 0.0
     high: float = 0.0
+    beyond: bool = False
 
 
 @dataclass(frozen=True)

@@ -274,7 +274,7 @@ def draw_legend(painter: QPainter, box: QRectF, title: str, legend: Legend, them
         ends = QRectF(x, y, wide, line)
         digits = 2 if legend.high - legend.low < 10 else 1
         painter.drawText(ends, Qt.AlignmentFlag.AlignLeft, f"{legend.low:.{digits}f}".replace("-", "−"))
-        last = f"{legend.high:.{digits}f} {legend.unit}".replace("-", "−")
+        last = ("≥ " if legend.beyond else "") + f"{legend.high:.{digits}f} {legend.unit}".replace("-", "−")
         painter.drawText(ends, Qt.AlignmentFlag.AlignRight, last)
     for swatch in legend.swatches:
         painter.fillRect(QRectF(x, y + line / 2 - 5, 12, 10), QColor(swatch.colour))

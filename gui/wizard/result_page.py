@@ -21,6 +21,7 @@ from geofit.gui.panels.marks import icon
 from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.translate import translated
 from geofit.project.importing import Import
+from geofit.report import digits
 
 __all__ = ["ResultPage"]
 
@@ -67,7 +68,7 @@ class ResultPage(QWidget):
         """Show what an import made."""
         read, used, listed = (sum(getattr(count, key) for count in found.counts) for key in ("read", "used", "listed"))
         text = self.tr("{read} rows read = {used} used + {listed} listed below.").format(
-            read=f"{read:,}", used=f"{used:,}", listed=f"{listed:,}"
+            read=digits.count(read), used=digits.count(used), listed=digits.count(listed)
         )
         if not found.site.horizons:
             text += " " + self.tr("No horizon was found: go back, and add intervals, sections, traces or points.")

@@ -32,6 +32,7 @@ from geofit.io.mapping import KINDS
 from geofit.io.preview import TablePreview
 from geofit.io.source import Source
 from geofit.io.units import unit_marked
+from geofit.report import digits
 
 __all__ = ["TablePage"]
 
@@ -222,7 +223,7 @@ class TablePage(QWidget):
             return notes
         notes = [
             self.tr("{count} rows, the first {shown} shown.").format(
-                count=f"{draft.preview.read:,}", shown=len(draft.preview.rows)
+                count=digits.count(draft.preview.read), shown=len(draft.preview.rows)
             )
         ]
         if draft.remembered and not draft.changed:

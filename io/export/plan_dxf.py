@@ -29,6 +29,7 @@ def write_plan_dxf(
     path: str | PathLike[str],
     *,
     unit: LengthUnit = "m",
+    note: str = "",
 ) -> None:
     """Write contour plans.
 
@@ -49,6 +50,8 @@ def write_plan_dxf(
         The file.
     unit : {"m", "ft", "ft-us"}
         That of the drawing.
+    note : str
+        Written below the title, if anything.
 
     Raises
     ------
@@ -89,5 +92,7 @@ def write_plan_dxf(
             space.add_circle((x, y, z), size / 2, dxfattribs={"layer": HOLES})
             name_text = space.add_text(hole.name, height=size, dxfattribs={"layer": HOLES})
             name_text.set_placement((x + size, y + size / 2, z))
-        head = space.add_text(title, height=2 * size, dxfattribs={"layer": TEXT})
-        head.set_placement((float(low[0]), float(low[1]) - 5 * size, 0.0))
+        for words, height, below in ((title, 2.0, 5.0), (note, 1.0, 7.5)):
+            if words:
+                text = space.add_text(words, height=height * size, dxfattribs={"layer": TEXT})
+                text.set_placement((float(low[0]), float(low[1]) - below * size, 0.0))

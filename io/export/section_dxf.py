@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.files import file_stems
+from geofit.data.languages import EN, Language, translate
 from geofit.data.lengths import LengthUnit, in_unit
+from geofit.data.stale import stale_warning
 from geofit.io.export.dxf import drawing_of
 from geofit.site.section_view import HoleTrack, SectionView, lithologies
 
@@ -34,13 +36,15 @@ def write_sheet_dxf(
     *,
     exaggeration: float = 1.0,
     unit: LengthUnit = "m",
+    language: Language = EN,
 ) -> None:
     """Write sections with ground, holes, lithology, bands and points.
 
     Layers: one a horizon, with ``_inferred`` (dashed: above the ground or beyond the data), ``_band`` and ``_points``;
     one a lithology code, ``LITH_code``; one a body, ``BODY_name``, with ``_band`` (dashed: between these lines its
     surface lies with 80 % chance); GROUND, HOLES, FRAME, TEXT. Each section is drawn in true lengths below the
-    one before it, in metres or in feet; ``exaggeration`` stretches elevations, and the title reports it.
+    one before it, in metres or in feet; ``exaggeration`` stretches elevations, and the title reports it. What
+    is older than its data is named above the title in ``language``.
 
     Raises
     ------
@@ -68,6 +72,9 @@ def write_sheet_dxf(
             letters = LETTERS * view.length
             words = f"{title} {view.name}".strip() + ("" if exaggeration == 1 else f" (z x {exaggeration:g})")
             _text(space, words, at(np.array([[0.0, high]]))[0], 1.6 * letters, 4 * letters)
+            if view.stale:
+                warning = translate(stale_warning(view.stale), language)
+                _text(space, warning, at(np.array([[0.0, high]]))[0], letters, 6.6 * letters)
             for level in _ticks(low, high):
                 _text(space, f"{level:g}", at(np.array([[-7 * letters, level]]))[0], letters, 0.0)
             corners = at(np.array([[0.0, low], [view.length, low], [view.length, high], [0.0, high]]))

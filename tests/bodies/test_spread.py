@@ -54,5 +54,5 @@ def test_too_few_contacts_for_a_band_are_a_warning(holes: int, few: bool) -> Non
     )
     body = fit_body(BodyData(contacts, [[0.0, 0.0, 0.0]], around))
     assert body.accuracy is not None
-    warned = [note.code for note in body.accuracy.notes if note.severity == "warning"]
+    warned = [note.code for note in body.accuracy.warnings]
     assert ("bodies.too-few-contacts-for-band" in warned) == few

@@ -17,8 +17,10 @@ from PySide6.QtWidgets import QColorDialog, QFileDialog, QInputDialog
 from geofit.bodies.settings import BodySettings
 from geofit.bodies.violations import Violation
 from geofit.data.messages import message
+from geofit.gui.dialogs.report import ReportDialog
+from geofit.gui.dialogs.step_fields import BodyStepDialog
 from geofit.gui.panels.tree_model import SHOWN
-from geofit.project.body_record import BodyStyle, Intervals
+from geofit.project.body_record import BodyStyle, Intervals, SurfacePicks
 from geofit.project.journal import unfinished
 
 ORE = Intervals(("ORE",), "bodies.toml")
@@ -123,7 +125,7 @@ def test_a_body_of_the_sites_own_codes_goes_stale_with_its_form(opened):
     opened.idle()
     assert list(opened.document.state.bodies) == ["风化带"]
     assert opened.document.body("风化带").fitted.name == "风化带"
-    assert not opened.bodies.showing.stale(opened.document.state.bodies["风化带"])
+    assert not opened.bodies.showing.stale("风化带")
     assert panel.banner.text == ""
     check(opened, "弱风化")
     assert "Not fitted with these settings yet" in panel.banner.text
@@ -429,7 +431,7 @@ def test_bodies_whose_data_changed_stay_as_they_were_saved_and_say_so(app, tmp_p
     app.window.files.open(folder / "dam.geofit")
     app.idle()
     assert app.document.body("ORE").origin == "read back"
-    assert app.bodies.showing.stale(app.document.state.bodies["ORE"])
+    assert app.bodies.showing.stale("ORE")
     assert "data have changed" in app.panels.bodies.banner.text
     assert "body:ORE" in app.panels.view.layers
     click(app, app.panels.bodies.fit_button) if app.panels.bodies.fit_button.isVisible() else app.bodies.fit(
@@ -438,6 +440,116 @@ def test_bodies_whose_data_changed_stay_as_they_were_saved_and_say_so(app, tmp_p
     app.idle()
     assert app.document.body("ORE").origin == "fitted"
     assert app.document.dirty
+
+
+def test_a_body_of_few_contacts_warns_of_its_band_in_the_panel(opened, tmp_path):
+    rows = ["x,y,z,nx,ny,nz"]
+    for axis, half in enumerate((60, 45, 30)):
+        for sign in (-1, 1):
+            way = [0, 0, 0]
+            way[axis] = sign
+            place = [half * one for one in way]
+            rows.append(",".join(map(str, (*place, *way))))
+    (tmp_path / "few.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    panel = opened.panels.bodies
+    opened.bodies.fit("few", SurfacePicks(str(tmp_path / "few.csv")), BodySettings(realizations=20))
+    opened.idle()
+    result = opened.document.body("few")
+    assert [note.code for note in result.accuracy.warnings] == ["bodies.too-few-contacts-for-band"]
+    assert "P10 to P90 is too narrow" in panel.warning.text
+    assert not panel.warning.isHidden()
+    panel.chosen.emit("")
+    opened.idle()
+    assert panel.warning.isHidden()
+
+
+@pytest.fixture
+def lens(app, tmp_path):
+    """A site whose body is fitted to a file of points, which changes then; returns the file's path."""
+    rng = np.random.default_rng(3)
+    normal = rng.normal(size=(80, 3))
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    xyz = normal * (60, 45, 30) + (100, 100, 50)
+    file = tmp_path / "lens.csv"
+    rows = [",".join(f"{value:.3f}" for value in (*place, *way)) for place, way in zip(xyz, normal, strict=True)]
+    file.write_text("x,y,z,nx,ny,nz\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    picks = [f"{10 * i},{10 * j},{100 + i - 0.5 * j},T2" for i in range(6) for j in range(6)]
+    (tmp_path / "picks.csv").write_text("x,y,z,horizon\n" + "\n".join(picks) + "\n", encoding="utf-8")
+    (tmp_path / "site.toml").write_text('[site]\nname = "S"\n[[picks]]\nfile = "picks.csv"\n', encoding="utf-8")
+    app.window.files.open(tmp_path / "site.toml")
+    app.idle()
+    app.panels, app.bodies = app.window.panels, app.window.bodies
+    app.bodies.fit("lens", SurfacePicks("lens.csv"), BodySettings(realizations=20))
+    app.idle()
+    app.bodies.watch.look()
+    app.idle()
+    assert not app.bodies.showing.stale("lens")
+    file.write_text("x,y,z,nx,ny,nz\n" + "\n".join(rows[1:]) + "\n", encoding="utf-8")
+    app.bodies.watch.look()
+    app.idle()
+    return file
+
+
+def test_a_body_whose_file_changed_is_marked_in_the_tree_and_the_panel(app, lens):
+    assert tree_bodies(app) == ["lens (stale)"]
+    row = tree_item(app, "lens (stale)")
+    assert row.italic
+    assert "Changed: Data in lens.csv" in row.words
+    assert "Changed: Data in lens.csv" in app.panels.bodies.banner.text
+    assert "Older than its data" in app.panels.bodies.badge.text
+    # The site is read again: that is about its own files, not about the body's.
+    app.window.living.reload()
+    app.idle()
+    assert app.bodies.showing.stale("lens")
+    app.bodies.fit("lens", SurfacePicks("lens.csv"), BodySettings(realizations=20))
+    app.idle()
+    assert tree_bodies(app) == ["lens"]
+    assert app.panels.bodies.banner.text == ""
+
+
+def test_what_is_written_of_a_stale_body_says_so(app, lens, tmp_path, monkeypatch):
+    said, dialogs = [], []
+    app.bodies.reported.connect(said.append)
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(tmp_path / "lens.step"), ""))
+    monkeypatch.setattr(BodyStepDialog, "exec", lambda dialog: bool(dialogs.append(dialog) or True))
+    app.bodies.ask_export("lens")
+    app.idle()
+    (dialog,) = dialogs
+    app.qtbot.addWidget(dialog)
+    assert not dialog.warning.isHidden()
+    assert "earlier data or settings): lens." in dialog.warning.text()
+    assert "earlier data or settings): lens." in said[-1]
+    pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
+    certificate = pdfium.PdfDocument(tmp_path / "lens_certificate.pdf")
+    text = " ".join(certificate[0].get_textpage().get_text_range().split())
+    certificate.close()
+    assert "(stale)" in text
+    assert "earlier data or settings): lens." in text
+
+
+def test_the_report_marks_a_stale_body_and_lists_what_changed(app, lens, tmp_path, monkeypatch):
+    app.window.fitting.fit("T2")
+    app.idle()
+    dialogs = []
+    monkeypatch.setattr(ReportDialog, "exec", lambda dialog: dialogs.append(dialog))
+    app.window.delivering.report()
+    (dialog,) = dialogs
+    app.qtbot.addWidget(dialog)
+    assert "Bodies: lens (stale)" in dialog.message.text()
+    assert "earlier data or settings): lens." in dialog.message.text()
+    monkeypatch.setattr(dialog, "open_result", lambda: None)
+    dialog.folder.setText(str(tmp_path / "out"))
+    dialog.examine.setChecked(False)
+    for form, box in dialog.forms.items():
+        box.setChecked(form == "html")
+    dialog.go.click()
+    app.qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
+    assert "earlier data or settings): lens." in dialog.message.text()
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    text = re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", page))
+    # On the cover, among the limits of use, and in the chapter of the body.
+    assert text.count("earlier data or settings): lens.") == 3
+    assert "Data in lens.csv at the fit" in text
 
 
 def test_a_session_that_was_cut_off_brings_its_bodies_back(with_ore, tmp_path):

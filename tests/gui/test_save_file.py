@@ -5,10 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from panel_samples import FAULT, fitted, sample_site
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QApplication, QFileDialog, QLineEdit, QMessageBox, QWidget
+from PySide6.QtWidgets import QApplication, QFileDialog, QLineEdit, QMessageBox, QPushButton, QWidget
 
 from geofit.gui import save_file
+from geofit.gui.dialogs.export_step import ExportDialog
+from geofit.gui.dialogs.plan_sheet import PlanSheetDialog
 from geofit.gui.save_file import ask_save_file
 
 STEP, IGES = "STEP files (*.step *.stp)", "IGES files (*.igs *.iges)"
@@ -97,6 +100,66 @@ def test_the_dialog_that_opens_asks_once(qtbot, tmp_path, asked):
     QTimer.singleShot(500, accept)
     assert ask_save_file(window, "Export", tmp_path / "other", STEP) == (tmp_path / "dam.step", STEP)
     assert asked == ["dam.step already exists. Replace it?"]
+
+
+@pytest.mark.usefixtures("own_settings")
+def test_a_step_file_whose_name_was_typed_is_replaced_only_by_consent(qtbot, tmp_path, asked):
+    dialog = ExportDialog({FAULT: fitted(FAULT)})
+    qtbot.addWidget(dialog)
+    dialog.show()
+    dialog.target.setText(str(tmp_path / "dam"))
+    for name in ("dam.step", "dam_certificate.pdf"):
+        (tmp_path / name).write_text("another's", encoding="utf-8")
+    asked.answers.append(NO)
+    dialog.go.click()
+    assert asked == ["dam.step, dam_certificate.pdf already exist. Replace them?"]
+    assert not dialog.running
+    assert (tmp_path / "dam.step").read_text(encoding="utf-8") == "another's"
+    dialog.certificate.setChecked(False)
+    asked.answers.append(YES)
+    dialog.go.click()
+    qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
+    assert asked[1:] == ["dam.step already exists. Replace it?"]
+    assert (tmp_path / "dam.step").read_text(encoding="utf-8").startswith("ISO-10303-21")
+
+
+@pytest.mark.usefixtures("own_settings")
+def test_a_step_file_that_was_agreed_on_when_it_was_chosen_is_not_asked_about_again(
+    qtbot, tmp_path, typed, asked, monkeypatch
+):
+    dialog, begun = ExportDialog({FAULT: fitted(FAULT)}), []
+    qtbot.addWidget(dialog)
+    monkeypatch.setattr(dialog, "begin", lambda *work, **_: begun.append(work))
+    dialog.certificate.setChecked(False)
+    (tmp_path / "dam.step").touch()
+    typed.append((str(tmp_path / "dam"), STEP))
+    asked.answers.append(YES)
+    button = next(one for one in dialog.findChildren(QPushButton) if one.text() == "&Browse…")
+    button.click()
+    dialog.go.click()
+    assert (len(asked), len(begun)) == (1, 1)
+    # The agreement was for that time, and for that file.
+    asked.answers += [NO, NO]
+    dialog.go.click()
+    (tmp_path / "weir.step").touch()
+    dialog.target.setText(str(tmp_path / "weir.step"))
+    dialog.go.click()
+    assert (len(asked), len(begun)) == (3, 1)
+
+
+@pytest.mark.usefixtures("own_settings")
+def test_sheets_whose_name_was_typed_are_replaced_only_by_consent(qtbot, tmp_path, asked):
+    dialog = PlanSheetDialog(sample_site(), {FAULT: fitted(FAULT)}, FAULT, tmp_path)
+    qtbot.addWidget(dialog)
+    dialog.show()
+    dialog.forms["svg"].setChecked(True)
+    for form in ("pdf", "svg"):
+        (tmp_path / f"plan.{form}").write_text("another's", encoding="utf-8")
+    asked.answers.append(NO)
+    dialog.go.click()
+    assert asked == ["plan.pdf, plan.svg already exist. Replace them?"]
+    assert not dialog.running
+    assert (tmp_path / "plan.pdf").read_text(encoding="utf-8") == "another's"
 
 
 def site(folder: Path) -> Path:

@@ -241,6 +241,38 @@ def test_the_new_place_of_a_site_is_asked_for(app, folder, tmp_path, answers, mo
     assert app.document.site_file == moved / "site.toml"
 
 
+@pytest.mark.parametrize("place", ["with", "beside", "nowhere"])
+def test_recovery_asks_where_a_site_is_that_was_moved(app, folder, tmp_path, answers, monkeypatch, place):
+    project = {"with": folder / "dam.geofit", "beside": tmp_path / "dam.geofit", "nowhere": None}[place]
+    if project is not None:
+        saved(app, project)
+    app.window.fitting.exclude("T2", [Row("picks.csv", 9)])
+    holes = excluded_holes(app.document)
+    (cut,) = unfinished(app.killed(tmp_path / "left"))
+    answers.append(QMessageBox.StandardButton.Discard)
+    app.window.files.close()
+    moved = tmp_path / "moved"
+    shutil.move(folder, moved)
+    answers += [QMessageBox.StandardButton.Cancel, QMessageBox.StandardButton.Open]
+    app.window.files.recover(cut)
+    app.idle()
+    assert not app.document.is_open
+    assert cut.path.is_file(), "it is offered again"
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_, **__: (str(moved / "site.toml"), ""))
+    app.window.files.recover(cut)
+    app.idle()
+    assert app.document.site_file == moved / "site.toml"
+    assert app.document.project_file == {"with": moved / "dam.geofit"}.get(place, project)
+    assert excluded_holes(app.document) == holes
+    assert app.document.dirty
+    if place == "with":
+        app.desktop.session.stack.undo()
+        assert not app.document.dirty, "the project that was moved with it holds the earlier state"
+    else:
+        saved(app, tmp_path / "dam.geofit")
+        assert read_project(tmp_path / "dam.geofit").site_file == moved / "site.toml"
+
+
 def test_a_site_file_that_is_gone_is_said_when_the_project_is_saved(app, folder, caplog):
     (folder / "site.toml").unlink()
     saved(app, folder / "dam.geofit")

@@ -8,7 +8,9 @@ import json
 import pytest
 
 from geofit.gui.dialogs.export_step import ExportDialog
+from geofit.gui.dialogs.plan_sheet import PlanSheetDialog
 from geofit.gui.dialogs.report import ReportDialog
+from geofit.gui.dialogs.section_sheet import SectionSheetDialog
 
 pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
 
@@ -46,7 +48,12 @@ def stale(app, tmp_path):
 def opened(app, monkeypatch, name):
     """Return the dialog that an action opens, without waiting for its end."""
     found = []
-    kind = {"report": ReportDialog, "export_step": ExportDialog}[name]
+    kind = {
+        "report": ReportDialog,
+        "export_step": ExportDialog,
+        "plan_sheet": PlanSheetDialog,
+        "section_sheet": SectionSheetDialog,
+    }[name]
     monkeypatch.setattr(kind, "exec", lambda dialog: found.append(dialog))
     getattr(app.window.delivering, name)()
     (dialog,) = found
@@ -97,3 +104,24 @@ def test_the_step_dialog_marks_the_stale_horizon_and_says_what_to_do(app, stale,
     assert "T2 ! PASS (stale)" in text
     assert "T3 ✓ PASS" in text
     assert "earlier data or settings): T2." in text
+
+
+@pytest.mark.parametrize("name", ["plan_sheet", "section_sheet"])
+def test_a_sheet_warns_of_the_stale_horizon_before_it_is_written_and_on_its_pages(
+    app, stale, tmp_path, monkeypatch, name
+):
+    dialog = opened(app, monkeypatch, name)
+    if name == "plan_sheet":
+        dialog.which.setCurrentText("T3")
+        assert "earlier data" not in dialog.message.text()
+        dialog.which.setCurrentIndex(dialog.which.count() - 1)
+    assert "earlier data or settings): T2." in dialog.message.text()
+    dialog.target.setText(str(tmp_path / "sheet"))
+    dialog.go.click()
+    app.qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
+    assert "Wrote" in dialog.message.text()
+    assert "earlier data or settings): T2." in dialog.message.text()
+    sheet = pdfium.PdfDocument(tmp_path / "sheet.pdf")
+    pages = [page.get_textpage().get_text_range() for page in sheet]
+    sheet.close()
+    assert ["earlier data or settings): T2." in text for text in pages] == [True, False][: len(pages)]

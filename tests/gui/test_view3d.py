@@ -360,6 +360,24 @@ def test_colours_follow_the_data(shown, qtbot):
     assert upper == pytest.approx(1540.0 + 1.6449 * 0.1, abs=1e-3)
 
 
+def test_the_legend_of_the_standard_deviation_ends_at_the_figure_of_the_panel(shown, qtbot):
+    """Vertices on the border of the study area lie beyond the grid, and have more there than anywhere in it."""
+    surface = shown.contents.surfaces["W"]
+    grid = np.linspace(-HALF, HALF, 5)
+    sd = np.tile(np.linspace(0.1, 0.5, 5), (5, 1))
+    for most in (0.4, 0.7):
+        shown.show_surface(
+            surface, Uncertainty(grid + ORIGIN[0], grid + ORIGIN[1], sd, 1.0, 0.3, most, np.ones((5, 5)))
+        )
+        shown.layers.change("surface:W", colour_by="standard deviation")
+        legend = shown.layers["surface:W"].legend
+        assert (legend.low, legend.high, legend.beyond) == (0.0, most, most == 0.4)
+        settle(shown, qtbot)
+    # The largest of what is drawn ends other colours, as those of the elevation.
+    shown.layers.change("surface:W", colour_by="elevation")
+    assert shown.layers["surface:W"].legend.high == pytest.approx(1540.0, abs=2e-3)
+
+
 def test_seams_have_their_places_and_colours(shown):
     surface = shown.contents.surfaces["W"]
     steep = replace(surface.accuracy, seams=(Seam("core", "east", 0.0, 5.0),))

@@ -11,6 +11,7 @@ from scipy.ndimage import gaussian_filter
 import geofit.implicit as implicit
 from geofit.data.errors import FitError
 from geofit.implicit.isosurface import isosurface, isosurface_of_samples
+from geofit.implicit.mesh import TriangleMesh
 
 BOX = ([-1.0] * 3, [1.0] * 3)
 EVERYTHING = (np.full(3, -np.inf), np.full(3, np.inf))
@@ -98,6 +99,11 @@ def test_extrapolated_and_curved_extents_of_smooth_bodies(name: str) -> None:
     assert better.volume == pytest.approx(volume, rel=limit)
     assert better.area == pytest.approx(area, rel=limit)
     assert better.volume_error < 2e-3 * volume
+
+
+def test_a_body_without_triangles_has_no_extent() -> None:
+    empty = TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), np.intp))
+    assert implicit.curved_extent(SOLIDS["sphere"][0], empty) == implicit.Extent(0.0, 0.0)
 
 
 def test_order_of_volume_and_area_is_two_and_that_of_curved_triangles_four() -> None:

@@ -9,14 +9,16 @@ import numpy as np
 import pytest
 
 import geofit
-from geofit.data.languages import EN, ZH
+from geofit.data.languages import EN, ZH, sentence
+from geofit.data.messages import message
+from geofit.data.stale import StaleCause
 from geofit.pores.representative import representative_volume
 from geofit.pores.volume import RockVolume
 from geofit.project.body_run import run_body
 from geofit.project.pores_run import run_pores
 from geofit.project.single_reports import body_findings, write_body_report, write_pores_report
 from geofit.report import fonts
-from geofit.report.body_chapter import body_chapter
+from geofit.report.body_chapter import BodyFindings, body_chapter
 from geofit.report.document import CheckMark, Facts, Heading, Paragraph, Picture, ReportTable
 from geofit.report.style import PASS
 
@@ -109,6 +111,32 @@ def test_what_was_not_examined_and_a_failed_check_are_said(run):
     assert "Checks: 0 of 1 checks pass; failed: sides" in words(chapter)
     marks = [cell for b in chapter.blocks if isinstance(b, ReportTable) for row in b.rows for cell in row]
     assert any(isinstance(cell, CheckMark) and cell.passed is False for cell in marks)
+
+
+@pytest.mark.parametrize("t", [EN, ZH], ids=lambda t: t.code)
+def test_what_limits_the_use_of_a_body_is_a_warning_in_its_chapter(run, t):
+    def warnings(findings):
+        blocks = body_chapter(findings, t).blocks
+        return [block.text for block in blocks if isinstance(block, Paragraph) and block.style == "warning"]
+
+    bare = BodyFindings(run.body, run.volumes)
+    assert warnings(bare) == []
+    few = message("test.few", "Contacts: {count}", count=8).with_severity("warning")
+    accuracy = replace(run.body.accuracy, notes=(message("test.active", "6 samples are active"), few))
+    assert warnings(replace(bare, body=run.body.with_accuracy(accuracy))) == [sentence(few, t)]
+
+
+@pytest.mark.parametrize("t", [EN, ZH], ids=lambda t: t.code)
+def test_the_chapter_of_a_stale_body_says_what_changed_and_does_not_pass_without_a_warning(run, t):
+    bare = BodyFindings(run.body, run.volumes)
+    stale = replace(bare, stale=(StaleCause("source", "lens.csv", "0123456789abcdef", "fedcba9876543210"),))
+    chapter = body_chapter(stale, t)
+    assert chapter.verdict.word == body_chapter(bare, t).verdict.word + (" (stale)" if t is EN else "（已过时）")
+    assert chapter.verdict.passed is None
+    warning, table = chapter.blocks[:2]
+    assert (warning.style, "ORE" in warning.text) == ("warning", True)
+    assert table.rows[0][0] == ("Data in lens.csv" if t is EN else "lens.csv 中的数据")
+    assert [row[2] for row in table.rows] == ["0123456789abcdef", "fedcba9876543210"]
 
 
 @pytest.mark.skipif(NO_FONT, reason="no font with Chinese characters on this machine")

@@ -12,7 +12,8 @@ import pytest
 
 import geofit
 from geofit.data.errors import SettingsError
-from geofit.data.languages import EN, ZH
+from geofit.data.languages import EN, ZH, translate
+from geofit.data.stale import StaleCause, stale_warning
 from geofit.io.site_file import read_site
 from geofit.project.plan_sheet import PlanOrder, write_plan_sheet
 from geofit.report import plan_pages
@@ -92,6 +93,20 @@ def test_the_dxf_has_contours_at_their_elevations_and_every_hole(tmp_path):
     written = {text.dxf.text for text in space.query("TEXT")}
     assert {hole.name for hole in result().site.holes} <= written
     assert "Contour plan" in written
+
+
+@pytest.mark.parametrize("language", [EN, ZH], ids=["en", "zh"])
+def test_the_plan_of_a_stale_surface_warns_on_the_sheet_and_in_the_drawing(tmp_path, language):
+    order = PlanOrder((NAME,), BLOCK, tmp_path / "plan", 10.0, ("pdf", "dxf"), language=language.code[:2])
+    stale = {NAME: (StaleCause("data", "", "0123456789abcdef", "fedcba9876543210"),)}
+    write_plan_sheet(result().site, {NAME: result().surface}, order, stale)
+    pdf = pypdfium2.PdfDocument(tmp_path / "plan.pdf")
+    words = pdf[0].get_textpage().get_text_range()
+    pdf.close()
+    text = translate(stale_warning([NAME]), language)
+    assert text in words
+    written = {one.dxf.text for one in ezdxf.readfile(tmp_path / "plan.dxf").modelspace().query("TEXT")}
+    assert text in written
 
 
 def test_the_same_plan_gives_the_same_bytes(tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import ezdxf
 import numpy as np
@@ -21,6 +22,7 @@ from geofit.report.section_pages import (
     write_sheet_pdf,
     write_sheet_svg,
 )
+from geofit.report.style import drawing
 from geofit.site.section_view import HoleTrack, Interval, SectionView, Trace
 
 BLOCK = SheetTitle("Geological section", "Upper dam", "D-17", "N. N.", "2026-11-22")
@@ -87,6 +89,41 @@ def test_the_pdf_has_a_page_a_section_of_its_paper_with_the_title_block(tmp_path
         assert word in words[0], word
     assert ("above ground" in words[0]) == (language is EN)
     assert "2 / 2" in words[1]
+
+
+@pytest.mark.parametrize("language", [EN, ZH], ids=["en", "zh"])
+def test_a_sheet_names_the_surfaces_on_it_that_are_older_than_their_data(tmp_path, language):
+    views = [replace(view("0+000"), stale=("low", "透镜体")), view("0+100")]
+    write_sheet_pdf(views, BLOCK, tmp_path / "s.pdf", language=language)
+    pdf = pypdfium2.PdfDocument(tmp_path / "s.pdf")
+    first, second = (page.get_textpage().get_text_range() for page in pdf)
+    pdf.close()
+    word = "Stale" if language is EN else "已过时"
+    assert word in first
+    assert "low" in first
+    assert "透镜体" in first
+    assert word not in second
+    write_sheet_dxf(views, "Section", tmp_path / "s.dxf", language=language)
+    space = ezdxf.readfile(tmp_path / "s.dxf").modelspace()
+    (warning,) = [text.dxf.text for text in space.query("TEXT") if word in text.dxf.text]
+    assert "透镜体" in warning
+
+
+@pytest.mark.parametrize("paper", PAPERS)
+@pytest.mark.parametrize("language", [EN, ZH], ids=["en", "zh"])
+def test_the_warning_of_many_stale_surfaces_stays_within_the_frame(paper, language):
+    names = tuple(f"base of the weathered zone {k}" for k in range(60))
+    shown = replace(view(), stale=names)
+    scale = fitting_scale([shown], paper)
+    word = "Stale" if language is EN else "已过时"
+    with drawing(8.0):
+        figure = section_pages.sheet_page([shown], shown, 1, BLOCK, paper, scale, 1.0, language)
+        (warning,) = [text for text in figure.texts if word in text.get_text()]
+        box = warning.get_window_extent().transformed(figure.transFigure.inverted())
+    wide = PAPERS[paper][0]
+    assert box.x1 * wide < wide - section_pages.EDGE
+    assert names[0] in warning.get_text()
+    assert names[-1] not in warning.get_text()
 
 
 def test_the_same_sheet_is_the_same_bytes(tmp_path):

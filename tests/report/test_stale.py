@@ -10,6 +10,7 @@ from results import horizon
 
 from geofit.data.languages import EN, ZH
 from geofit.data.stale import StaleCause
+from geofit.report.accuracy_report import SectionSheet
 from geofit.report.chapters import document
 from geofit.report.document import Paragraph, VerdictMark
 from geofit.report.gather import accuracy_report
@@ -67,6 +68,13 @@ def test_the_json_lists_the_causes_of_the_stale_surface(report):
 def test_the_limits_of_use_except_the_stale_surface(report):
     summary = document(report, EN).chapters[1]
     assert any(isinstance(one, Paragraph) and "earlier data or settings): T3/T2" in one.text for one in summary.blocks)
+
+
+def test_every_section_of_the_report_names_the_stale_surface(report):
+    with_section = replace(report, sections=(SectionSheet("A", (0, 0), (9, 0), 9, 0, 5, 100, 1, False, False, "s"),))
+    (chapter,) = [one for one in document(with_section, EN).chapters if one.title == "Geological sections"]
+    warnings = [one.text for one in chapter.blocks if isinstance(one, Paragraph) and one.style == "warning"]
+    assert ["earlier data or settings): T3/T2." in text for text in warnings] == [True]
 
 
 def test_a_failed_verdict_stays_failed():
