@@ -29,7 +29,7 @@ WINDOWS := tests/gui
 VOLUMES := tests/bodies tests/caves tests/implicit tests/medial tests/morphing tests/pores
 FILES := tests/cad tests/cli tests/io tests/project tests/report
 PARTS := test-windows test-volumes test-files test-others
-# Threads of linear algebra on small matrices wait for each other where another part runs beside them: tenfold time.
+# Threads of linear algebra on small matrices wait for each other where another part runs next to them: tenfold time.
 $(PARTS): export OPENBLAS_NUM_THREADS ?= 1
 $(PARTS): export OMP_NUM_THREADS ?= 1
 test: .venv/.installed-all
