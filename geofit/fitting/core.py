@@ -106,7 +106,10 @@ def fit_with_core(
     between = ~parametrization.parametrized[kept]
     given = Core(data, core, inside, between, field, coarse, lines, parametrization.parametric, settings, None)
     relief = relief_of_core(data, core, inside, field, settings, most, lambda: _near_noise(given))
-    given = replace(given, relief=relief)
+    if relief is not None and not relief.field.contradictory:
+        # Points do not contradict each other where a field of a shorter range follows them.
+        field = replace(field, contradictory=False)
+    given = replace(given, field=field, relief=relief)
     if settings.core == "auto" and settings.smoothing == "auto" and not parametrization.parametric:
         _refuse_noise(given, drawn=float(np.mean(parametrization.section[kept][inside] != "")))
     stage("core", 0.4)

@@ -15,6 +15,7 @@ from geofit.data.languages import EN, ZH
 from geofit.io.export.section_dxf import write_sheet_dxf
 from geofit.prediction.section_bands import SectionBand
 from geofit.report import section_pages
+from geofit.report.furniture import scale_text
 from geofit.report.paper import PAPERS, SCALES, SheetTitle
 from geofit.report.section_pages import (
     fitting_scale,
@@ -59,7 +60,7 @@ def test_a_drawing_is_as_long_as_its_scale_says(tmp_path, paper, length, exagger
     assert box.x1 * wide <= wide - section_pages.EDGE - section_pages.LEGEND
     larger = [one for one in SCALES if one < scale]
     if larger:
-        with pytest.raises(SettingsError, match=f"1:{scale}"):
+        with pytest.raises(SettingsError, match=scale_text(scale)):
             write_sheet_pdf(
                 [shown], BLOCK, tmp_path / "x.pdf", paper=paper, scale=larger[-1], exaggeration=exaggeration
             )
