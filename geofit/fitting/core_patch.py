@@ -62,7 +62,7 @@ HUG, HUGGED = 1 / 8, 1
 NARROW = 0.2
 #: Room between a core's points and the edge of its patch, as a share of their spacing, and the spans that it holds:
 #: the finer functions vanish at the edge.
-ROOM, IN_ROOM = 1.0, 2.5
+ROOM, IN_ROOM = 0.5, 2.5
 #: Points of the periphery nearer to the core's than this share of its room lie in its patch.
 CLOSE = 0.5
 #: A point on which the finer functions act with less than this sum of squares is not reached by them.
