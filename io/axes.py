@@ -21,10 +21,10 @@ Floats = NDArray[np.float64]
 _BINS = 19
 #: Places that are counted together; of more than that, those that are evenly spread are not looked at one by one.
 _CHUNK = _MANY = 1 << 16
-#: Rows are strays beyond this many extents of the others, if they are no more than this share of all; the outermost of
-#: all also beyond the second number, if one of their coordinates alone is off.
+#: Rows farther from the others than this many times their extent are strays, unless they exceed this share of all rows.
+#: For the outermost rows the second number applies, if only one of their coordinates is off.
 STRAY, OUTERMOST, STRAYS = 3.0, 1.0, 0.05
-#: More rows than strays, beyond this many extents of the others, are in another coordinate system.
+#: Rows too many to be strays, and farther from the others than this many times their extent, are in another system.
 OTHER_SYSTEM = 20.0
 #: The crowd within which places are looked at first, in median distances: any row in it with x and y exchanged is
 #: taken for one; any beyond the nearer one may be a stray.

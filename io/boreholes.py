@@ -140,7 +140,7 @@ def load_boreholes(
             "note",
             collar.name,
             message(
-                "io.holes-taken-as-vertical", "There is no survey: all holes ({count}) are vertical", count=len(collars)
+                "io.holes-taken-as-vertical", "No survey: all holes ({count}) are taken as vertical", count=len(collars)
             ),
             message(
                 "io.add-survey", "If some are inclined, add the survey table, or azimuth and dip to the collar table."

@@ -32,7 +32,7 @@ Mask = NDArray[np.bool_]
 
 #: Elevations that programs write where there is none.
 NO_DATA = (-9999.0, -99999.0, -999.25, -999999.0, 1e30, 1e31, 1.70141e38)
-#: What people write where there is no number, without case.
+#: Marks for a missing number, in lower case.
 _NO_NUMBER = frozenset({
     "-", "--", "–", "—", "/", "?", "n/a", "n.a.", "na", "nan", "n.d.", "nd", "nil", "none", "null", "unknown",
     "k.a.", "unbekannt", "s.o.", "无", "不详",

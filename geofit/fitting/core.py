@@ -58,6 +58,9 @@ A_POINT, LAST_CAP = 15, 60
 LONGEST = 0.45
 #: The same where the likelihood asks for a field on finer spans than evenly spaced points do, as far as the cap allows.
 LONGEST_IN_GROUPS = 0.35
+#: Spans below this share of the shortest that points in groups resolve calm a field that would swing: they are kept.
+#: (Spans that divide an area evenly are a little shorter than was asked for.)
+CALMED = 0.9
 #: Slope that two neighbours may ask for beyond the field's own, where not all points of a core can be met.
 CLIFF = 0.5
 #: Noise above this share of the values' spread: points that do not support each other. It does not follow the
@@ -124,7 +127,7 @@ def fit_with_core(
             ).with_severity("warning"),
         )
     longest = longest_span(coarse)
-    if longest > 0.9 * CLOSE:
+    if longest > CALMED * CLOSE:
         longest = min(LONGEST, max(longest, LONGEST_IN_GROUPS))
     first = limits = Limits(most, longest)
     # Curves that run through the whole surface, and a break at the core's edge, need knots that do so too.

@@ -172,7 +172,8 @@ def _wild(level: Level, data: Data) -> bool:
     value = np.asarray(data.value[:])
     low, high = float(value.min()), float(value.max())
     found = smooth(level.space, level.field, data.weighted, data.trend).coefficients
-    return bool(np.maximum(found - high, low - found).max() > WILD * (high - low))
+    # About an exact plane, rounding is all the range there is.
+    return bool(np.maximum(found - high, low - found).max() > WILD * max(high - low, level.field.noise))
 
 
 def _tried(on: Search, space: TensorSpace, field: FieldChoice, needed: float) -> Level | None:

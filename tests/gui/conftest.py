@@ -188,3 +188,19 @@ def sample(tmp_path_factory):
     folder = tmp_path_factory.mktemp("sample")
     write_site(folder)
     return folder
+
+
+@pytest.fixture
+def write_report(app, monkeypatch):
+    """Function that writes a report in one form from its dialog into a folder, and waits until it is written."""
+
+    def write(dialog, folder, wanted):
+        monkeypatch.setattr(dialog, "open_result", lambda: None)
+        dialog.folder.setText(str(folder))
+        dialog.examine.setChecked(False)
+        for form, box in dialog.forms.items():
+            box.setChecked(form == wanted)
+        dialog.go.click()
+        app.qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
+
+    return write

@@ -527,7 +527,7 @@ def test_what_is_written_of_a_stale_body_says_so(app, lens, tmp_path, monkeypatc
     assert "earlier data or settings): lens." in text
 
 
-def test_the_report_marks_a_stale_body_and_lists_what_changed(app, lens, tmp_path, monkeypatch):
+def test_the_report_marks_a_stale_body_and_lists_what_changed(app, lens, tmp_path, monkeypatch, write_report):
     app.window.fitting.fit("T2")
     app.idle()
     dialogs = []
@@ -537,13 +537,7 @@ def test_the_report_marks_a_stale_body_and_lists_what_changed(app, lens, tmp_pat
     app.qtbot.addWidget(dialog)
     assert "Bodies: lens (stale)" in dialog.message.text()
     assert "earlier data or settings): lens." in dialog.message.text()
-    monkeypatch.setattr(dialog, "open_result", lambda: None)
-    dialog.folder.setText(str(tmp_path / "out"))
-    dialog.examine.setChecked(False)
-    for form, box in dialog.forms.items():
-        box.setChecked(form == "html")
-    dialog.go.click()
-    app.qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
+    write_report(dialog, tmp_path / "out", "html")
     assert "earlier data or settings): lens." in dialog.message.text()
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     text = re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", page))

@@ -220,19 +220,25 @@ def test_the_ending_of_a_project_may_be_in_capitals(app, folder):
     assert app.document.project_file == path
 
 
-def test_the_new_place_of_a_site_is_asked_for(app, folder, tmp_path, answers, monkeypatch):
-    path = saved(app, tmp_path / "dam.geofit")
-    app.window.files.close()
-    moved = tmp_path / "moved"
+def opened_where_it_moved(app, folder, answers, monkeypatch, open_it):
+    """Move a site, open it without its new place and then with it, and return that."""
+    moved = folder.parent / "moved"
     shutil.move(folder, moved)
     answers += [QMessageBox.StandardButton.Cancel, QMessageBox.StandardButton.Open]
-    app.window.files.open(path)
+    open_it()
     app.idle()
     assert not app.document.is_open
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_, **__: (str(moved / "site.toml"), ""))
-    app.window.files.open(path)
+    open_it()
     app.idle()
     assert app.document.site_file == moved / "site.toml"
+    return moved
+
+
+def test_the_new_place_of_a_site_is_asked_for(app, folder, tmp_path, answers, monkeypatch):
+    path = saved(app, tmp_path / "dam.geofit")
+    app.window.files.close()
+    moved = opened_where_it_moved(app, folder, answers, monkeypatch, lambda: app.window.files.open(path))
     assert excluded_holes(app.document) == {"B3"}
     assert app.document.dirty
     saved(app, path)
@@ -241,9 +247,9 @@ def test_the_new_place_of_a_site_is_asked_for(app, folder, tmp_path, answers, mo
     assert app.document.site_file == moved / "site.toml"
 
 
-@pytest.mark.parametrize("place", ["with", "beside", "nowhere"])
+@pytest.mark.parametrize("place", ["with", "apart", "nowhere"])
 def test_recovery_asks_where_a_site_is_that_was_moved(app, folder, tmp_path, answers, monkeypatch, place):
-    project = {"with": folder / "dam.geofit", "beside": tmp_path / "dam.geofit", "nowhere": None}[place]
+    project = {"with": folder / "dam.geofit", "apart": tmp_path / "dam.geofit", "nowhere": None}[place]
     if project is not None:
         saved(app, project)
     app.window.fitting.exclude("T2", [Row("picks.csv", 9)])
@@ -251,17 +257,12 @@ def test_recovery_asks_where_a_site_is_that_was_moved(app, folder, tmp_path, ans
     (cut,) = unfinished(app.killed(tmp_path / "left"))
     answers.append(QMessageBox.StandardButton.Discard)
     app.window.files.close()
-    moved = tmp_path / "moved"
-    shutil.move(folder, moved)
-    answers += [QMessageBox.StandardButton.Cancel, QMessageBox.StandardButton.Open]
-    app.window.files.recover(cut)
-    app.idle()
-    assert not app.document.is_open
-    assert cut.path.is_file(), "it is offered again"
-    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_, **__: (str(moved / "site.toml"), ""))
-    app.window.files.recover(cut)
-    app.idle()
-    assert app.document.site_file == moved / "site.toml"
+
+    def recover():
+        assert cut.path.is_file(), "it is offered again"
+        app.window.files.recover(cut)
+
+    moved = opened_where_it_moved(app, folder, answers, monkeypatch, recover)
     assert app.document.project_file == {"with": moved / "dam.geofit"}.get(place, project)
     assert excluded_holes(app.document) == holes
     assert app.document.dirty

@@ -61,18 +61,12 @@ def opened(app, monkeypatch, name):
     return dialog
 
 
-def test_the_report_states_the_hash_of_the_fit(app, stale, tmp_path, monkeypatch):
+def test_the_report_states_the_hash_of_the_fit(app, stale, tmp_path, monkeypatch, write_report):
     file, then = stale
     dialog = opened(app, monkeypatch, "report")
     assert "T2 (stale), T3" in dialog.message.text()
     assert "Fit again" in dialog.message.text()
-    monkeypatch.setattr(dialog, "open_result", lambda: None)
-    dialog.folder.setText(str(tmp_path / "out"))
-    dialog.examine.setChecked(False)
-    for form, box in dialog.forms.items():
-        box.setChecked(form == "json")
-    dialog.go.click()
-    app.qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
+    write_report(dialog, tmp_path / "out", "json")
     assert "Wrote" in dialog.message.text()
     assert "Fit again" in dialog.message.text()
     first, second = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))["horizons"]
