@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QRect
 from PySide6.QtGui import QColor, QPainter, QPalette
-from PySide6.QtWidgets import QStyle, QStyleOption, QStyleOptionComplex, QTabBar, QWidget
+from PySide6.QtWidgets import QStyle, QStyleOption, QStyleOptionComplex, QWidget
 
 from geofit.gui.style import Style
+from geofit.gui.tab_style import mark_tab
 
 __all__ = ["DarkStyle"]
 
@@ -18,9 +18,6 @@ _PRIMITIVES = {
 }  # fmt: skip
 _CONTROLS = {_Control.CE_ShapedFrame}
 _COMPLEX = {_Complex.CC_SpinBox, _Complex.CC_ComboBox}
-_SOUTH = {QTabBar.Shape.RoundedSouth, QTabBar.Shape.TriangularSouth}
-#: Pixels of the line at the tab in front.
-_MARK = 2
 #: Fusion draws its frames in the window's colour divided by 1.4: this gives a grey of 3 to 1 against the fields.
 _FRAMES = QColor("#8d99a6")
 
@@ -54,8 +51,7 @@ class DarkStyle(Style):
         """Draw a frame with a shape; mark the tab in front."""
         if element not in _CONTROLS:
             super().drawControl(element, option, painter, widget)
-            if element == _Control.CE_TabBarTabShape and option.state & QStyle.StateFlag.State_Selected:
-                _mark_tab(option, painter, widget)
+            mark_tab(element, option, painter, widget)
             return
         own = QPalette(option.palette)
         option.palette = self._framed
@@ -73,11 +69,3 @@ class DarkStyle(Style):
         if control in _COMPLEX:
             option.palette = self._framed
         super().drawComplexControl(control, option, painter, widget)
-
-
-def _mark_tab(option: QStyleOption, painter: QPainter, widget: QWidget | None) -> None:
-    """Underline a tab at its free edge: its ground hardly differs from that of the others."""
-    south = isinstance(widget, QTabBar) and widget.shape() in _SOUTH
-    box = option.rect
-    edge = box.bottom() - _MARK if south else box.top()
-    painter.fillRect(QRect(box.left() + 2, edge, box.width() - 4, _MARK), option.palette.highlight())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QEvent, QSize, Signal
+from PySide6.QtCore import QChildEvent, QEvent, QSize, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication, QInputDialog, QMainWindow, QTabBar
 
@@ -33,6 +33,7 @@ from geofit.gui.selecting import Selecting
 from geofit.gui.session import Session
 from geofit.gui.showing import Showing
 from geofit.gui.surveys import Surveys
+from geofit.gui.tab_style import TabStyle
 from geofit.gui.theme import apply_theme, is_dark, set_text_size
 from geofit.gui.view3d.mouse import Scheme
 from geofit.gui.worker import finish_all
@@ -67,6 +68,8 @@ class MainWindow(QMainWindow):
         super().__init__()
         self.session, self.preferences = session, preferences
         self._ready = self._leaving = False
+        self._tab_style = TabStyle()
+        self._tab_style.setParent(self)
         self.steps: StepsDialog | None = None
         self.setWindowIcon(application_icon())
         self.setAcceptDrops(True)
@@ -185,6 +188,12 @@ class MainWindow(QMainWindow):
             if now is start or not (unseen or self.panels.reach.behind(now)):
                 return True
         return False
+
+    def childEvent(self, event: QChildEvent) -> None:  # noqa: N802
+        """Draw the tabs of docks close together, in each bar that Qt makes for them."""
+        super().childEvent(event)
+        if event.type() == QEvent.Type.ChildPolished and isinstance(bar := event.child(), QTabBar):
+            bar.setStyle(self._tab_style)
 
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Draw in the colours of another theme."""

@@ -26,8 +26,6 @@ _RINGED = {_Primitive.PE_FrameLineEdit, _Control.CE_ShapedFrame, _Complex.CC_Spi
 _RINGED_BY_KEYS = {_Primitive.PE_PanelButtonCommand}
 #: Pixels.
 _RING, _ROUND = 1.6, 2.5
-#: Pixels of a tab beyond its name.
-_TAB = 14
 
 
 class Style(QProxyStyle):
@@ -47,14 +45,6 @@ class Style(QProxyStyle):
         if standard in self._icons:
             return self._icons[standard]
         return super().standardIcon(standard, option, widget)
-
-    def pixelMetric(  # noqa: N802
-        self, metric: QStyle.PixelMetric, option: QStyleOption | None = None, widget: QWidget | None = None
-    ) -> int:
-        """Return a length in pixels: tabs stand close enough for every name of a panel to be read."""
-        if metric == QStyle.PixelMetric.PM_TabBarTabHSpace:
-            return _TAB
-        return super().pixelMetric(metric, option, widget)
 
     def drawPrimitive(  # noqa: N802
         self, element: QStyle.PrimitiveElement, option: QStyleOption, painter: QPainter, widget: QWidget | None = None

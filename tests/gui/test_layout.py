@@ -5,10 +5,11 @@ from __future__ import annotations
 import pytest
 from panel_samples import SITE, sample_site
 from PySide6.QtCore import QByteArray
-from PySide6.QtWidgets import QToolBar
+from PySide6.QtWidgets import QTabBar, QToolBar
 
 from geofit.data.site import Site
 from geofit.gui.layout import BOTTOM
+from geofit.gui.theme import THEMES
 
 
 def opened(app):
@@ -93,6 +94,21 @@ def test_the_view_has_most_of_a_small_window(app):
     view = app.window.panels.view
     assert view.width() * view.height() >= 0.55 * 1280 * 800
     assert app.window.panels.layout.folded
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_every_tab_below_the_view_of_a_small_window_can_be_read(app, theme):
+    app.window.resize(1280, 800)
+    opened(app)
+    app.window.actions_.themes.actions()[THEMES.index(theme)].trigger()
+    app.window.panels.reveal("plan")
+    app.idle()
+    bar = max((bar for bar in app.window.findChildren(QTabBar) if bar.isVisible()), key=QTabBar.count)
+    assert bar.count() > 10
+    for k in range(bar.count()):
+        name = bar.tabText(k)
+        assert bar.tabRect(k).right() < bar.width(), name
+        assert bar.fontMetrics().horizontalAdvance(name) < bar.tabRect(k).width(), name
 
 
 def test_a_button_unfolds_a_panel_and_folds_all_away_again(app):

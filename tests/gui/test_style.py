@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QPalette
@@ -113,6 +115,19 @@ def test_the_tab_in_front_is_marked_in_the_dark(qapp, qtbot):
         ]
         assert (accent in column) == marked
     apply_theme(qapp, "light")
+
+
+def test_qt_asks_python_for_nothing_while_it_makes_a_widget(theme, qapp, qtbot):
+    """It would wrap thousands of half-made widgets a window; one ended in a crash."""
+    asked = []
+    sys.setprofile(lambda frame, event, _: event == "call" and asked.append(frame.f_code.co_qualname))
+    try:
+        made = [kind() for kind in (QComboBox, QDoubleSpinBox, QLineEdit, QTableWidget, QTabWidget, QTreeWidget)]
+    finally:
+        sys.setprofile(None)
+    for widget in made:
+        qtbot.addWidget(widget)
+    assert [name for name in asked if "Style" in name] == []
 
 
 def test_a_theme_that_is_switched_while_the_window_is_open_reaches_every_widget(app):
