@@ -176,3 +176,33 @@ def test_a_site_of_bodies_alone(app, sample, tmp_path):
     assert list(document.state.bodies) == ["ORE"]
     assert document.body("ORE").origin == "again"
     app.window.grab().save(str(tmp_path / "alone.png"))
+
+
+def test_the_files_of_a_site_of_bodies_alone_are_read_again(app, sample, tmp_path):
+    for name in ("bodies.toml", "bodies"):
+        source = sample / name
+        (shutil.copytree if source.is_dir() else shutil.copy)(source, tmp_path / name)
+    app.window.files.open(tmp_path / "bodies.toml")
+    app.idle()
+    app.window.bodies.fit("", Intervals(("ORE",)), app.window.panels.bodies.form.edited())
+    app.idle()
+    log = tmp_path / "bodies" / "lithology.csv"
+    rows = log.read_text(encoding="utf-8").splitlines(keepends=True)
+    ore = next(k for k, row in enumerate(rows) if "ORE" in row)
+    log.write_text("".join(rows[:ore] + rows[ore + 1 :]), encoding="utf-8")
+    before = app.document.read
+    app.window.living.reload()
+    app.idle()
+    assert app.failures == []
+    assert app.document.read is not before
+    assert not app.document.horizons
+    assert app.window.bodies.showing.stale("ORE"), "its log has changed"
+    app.desktop.session.stack.undo()
+    assert not app.window.bodies.showing.stale("ORE")
+    app.desktop.session.stack.redo()
+    app.window.files.save_to(tmp_path / "work.geofit")
+    app.idle()
+    app.window.files.open(tmp_path / "work.geofit")
+    app.idle()
+    assert app.window.bodies.showing.stale("ORE"), "it was made from the log as it was"
+    assert app.failures == []

@@ -276,6 +276,13 @@ def test_bodies_come_go_and_change_in_their_place():
     assert heard == [("ORE",), ("ORE", "VOID"), ("矿体", "VOID"), ("矿体", "VOID"), ("矿体", "VOID"), ("ORE", "VOID")]
 
 
+def test_data_without_horizons_are_for_sites_that_have_none():
+    change = ChangeData("x", ("a.csv",), (), {}, {}, {}, {})
+    assert change.on(State()).data == "x"
+    with pytest.raises(DocumentError, match="no horizon"):
+        change.on(document().state)
+
+
 def test_a_row_names_one_point():
     points = site().horizons["low"]
     for index in range(len(points)):
