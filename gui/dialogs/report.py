@@ -27,6 +27,7 @@ from geofit.data.site import Site
 from geofit.data.stale import stale_warning
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.preferences import Preferences
+from geofit.gui.save_file import may_replace
 from geofit.gui.translate import translated
 from geofit.project.body_building import BodyResult
 from geofit.project.building import Given
@@ -66,6 +67,8 @@ class ReportDialog(TaskDialog):
         self.setWindowTitle(self.tr("Accuracy report"))
         self._results = list(results)
         self._path: Path | None = None
+        # What was written from here is replaced unasked.
+        self._own: set[Path] = set()
         self.language = QComboBox()
         for code, name in (("en", "English"), ("zh", "中文")):
             self.language.addItem(name, code)
@@ -155,6 +158,10 @@ class ReportDialog(TaskDialog):
         return [form for form, box in self.forms.items() if box.isChecked()]
 
     def _write(self) -> None:
+        folder = Path(self.folder.text().strip()).expanduser()
+        files = {folder / f"report.{form}" for form in self._chosen()}
+        if not may_replace(sorted(files - self._own), self.windowTitle(), self):
+            return
         examined = self.examine.isChecked()
         # The model behind the patches is only needed to leave points out, and for the bands of the sections.
         results = [
@@ -164,7 +171,6 @@ class ReportDialog(TaskDialog):
             for result in self._results
         ]
         date = self.date.date().toString(Qt.DateFormat.ISODate)
-        folder = Path(self.folder.text().strip()).expanduser()
         work = (
             results,
             self._blocks,
@@ -193,6 +199,7 @@ class ReportDialog(TaskDialog):
         self._ask_to_examine()
         best: Form = next(form for form in ("pdf", "html", "json") if form in made.files)
         self._path = made.files[best]
+        self._own |= set(made.files.values())
         QSettings().setValue(_FOLDER, str(self._path.parent.parent))
         names = ", ".join(path.name for path in made.files.values())
         text = self.tr("Wrote {names} in {folder}.").format(names=names, folder=self._path.parent.resolve())

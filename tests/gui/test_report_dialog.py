@@ -8,6 +8,7 @@ import pytest
 from panel_samples import FAULT, fitted, sample_site
 from PySide6.QtCore import QDate, Qt
 from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import QMessageBox
 
 from geofit.gui.dialogs.report import ReportDialog
 from geofit.report.result import HorizonResult
@@ -94,6 +95,27 @@ def test_a_folder_that_cannot_be_made_is_told(qtbot, tmp_path, opened_files):
     assert "folder cannot be made" in dialog.message.text()
     assert not opened_files
     assert not dialog.view.isVisible()
+
+
+def test_a_report_that_is_there_is_replaced_only_by_consent(qtbot, tmp_path, opened_files, monkeypatch):
+    asked, answer = [], QMessageBox.StandardButton.No
+    monkeypatch.setattr(QMessageBox, "exec", lambda box: asked.append(box.text()) or answer)
+    (tmp_path / "report.json").write_text("mine")
+    dialog = opened(qtbot, fitted(FAULT).with_(model=None))
+    dialog.examine.setChecked(False)
+    dialog.folder.setText(str(tmp_path))
+    for form, box in dialog.forms.items():
+        box.setChecked(form == "json")
+    press(qtbot, dialog, dialog.go)
+    assert asked == ["report.json already exists. Replace it?"]
+    assert (tmp_path / "report.json").read_text() == "mine"
+    answer = QMessageBox.StandardButton.Yes
+    press(qtbot, dialog, dialog.go)
+    first = (tmp_path / "report.json").read_text()
+    assert first != "mine"
+    press(qtbot, dialog, dialog.go)
+    assert len(asked) == 2, "this dialog wrote it itself"
+    assert (tmp_path / "report.json").read_text() == first
 
 
 def test_stop_writes_nothing(qtbot, tmp_path, opened_files):
