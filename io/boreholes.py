@@ -391,10 +391,9 @@ def _read_log(
     source: Source, collars: Mapping[str, Collar], paths: Mapping[str, WellPath], journal: Journal
 ) -> IntervalLog:
     rows = read_rows(source, INTERVALS, journal)
-    name, code = np.array(rows.text("hole")), np.array(rows.text("code"))
+    code, top, base = np.array(rows.text("code")), rows.numbers("from"), rows.numbers("to")
     lower_only = "from" not in rows.columns
-    top, base = rows.numbers("from"), rows.numbers("to")
-    name = np.array(rows.require_known("hole", name.tolist(), collars, "collar table"))
+    name = np.array(rows.require_known("hole", rows.holes(base), collars, "collar table"))
     end = np.array([collars[h].end if h in collars else np.nan for h in name])
     mouth = np.array([collars[h].xyz[2] if h in collars else np.nan for h in name])
     if _by_elevation(rows, name, top, base, mouth):

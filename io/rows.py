@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.labels import Labels
-from geofit.data.messages import EMPTY, Message, Untranslated, message
+from geofit.data.messages import EMPTY, Message, Untranslated, message, plural_message
 from geofit.io.big_columns import BigColumn
 from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
 from geofit.io.crs import WGS84, is_code, project_places, refuse_degrees
@@ -77,6 +77,35 @@ class Rows:
             for i in np.flatnonzero(found.codes == found.table.index("")).tolist():
                 self.reject(i, role, empty, message("io.complete-the-cell", "Complete the cell."))
         return found
+
+    def holes(self, depth: Floats) -> list[str]:
+        """Return the hole of each row of a log; its name may stand in its first row alone, as in merged cells.
+
+        So it does where no name stands twice. A row without a name then belongs to the hole above it, if its ``depth``
+        (n,) is greater than the one above.
+        """
+        names = self.text("hole", required=False)
+        given = [name for name in names if name]
+        if len(given) == len(names) or len(set(given)) < len(given):
+            return self.text("hole")
+        filled = 0
+        for i in range(1, len(names)):
+            if not names[i] and names[i - 1] and depth[i] > depth[i - 1]:
+                names[i] = names[i - 1]
+                filled += 1
+        if filled:
+            reason = plural_message(
+                "io.holes-from-above",
+                "{count} row without a hole belongs to the hole above, whose depths it continues",
+                "{count} rows without a hole belong to the holes above, whose depths they continue",
+                count=filled,
+            )
+            remedy = message("io.repeat-hole-names", "To be sure, write the name of the hole in every row.")
+            self.journal.add("warning", self.file, reason, remedy, column=self.table.header[self.columns["hole"]])
+        for i in [i for i, name in enumerate(names) if not name]:
+            reason = message("io.cell-empty", "The {role} is empty", role="hole")
+            self.reject(i, "hole", reason, message("io.complete-the-cell", "Complete the cell."))
+        return names
 
     def numbers(self, role: str, *, required: bool = True, no_data: bool = False) -> Floats:
         """Return the numbers of a role; rows without a finite one are rejected, or nan where one is optional.

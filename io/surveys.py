@@ -133,7 +133,8 @@ def read_stations(
     its first station, and a hole with one station is straight: each is listed as a warning, vertical ones in one note.
     """
     rows = read_rows(source, SURVEY, journal)
-    name, depth = rows.text("hole"), rows.numbers("depth")
+    depth = rows.numbers("depth")
+    name = rows.holes(depth)
     name = rows.require_known("hole", name, collars, "collar table")
     for i in np.flatnonzero((depth < 0) & rows.ok).tolist():
         rows.reject(

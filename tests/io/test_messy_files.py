@@ -428,3 +428,57 @@ def test_holes_in_two_collar_tables_are_warned_of(campaign, write, tmp_path):
     found = import_files([*files, write(table(LOG, campaign.log()), "log.csv")], tmp_path / "site.toml")
     (split,) = of(found, "io.holes-in-other-collars")
     assert (split.file, split.reason.params["count"]) == ("log.csv", 15)
+
+
+# Names that stand once a block
+
+
+def in_first_row(rows):
+    seen = set()
+    return [("" if row[0] in seen or seen.add(row[0]) else row[0], *row[1:]) for row in rows]
+
+
+def with_survey(campaign):
+    return [(name, depth, 0, 90) for name in campaign.names for depth in (0.0, 50.0, 90.0)]
+
+
+@pytest.mark.parametrize("merged", [False, True])
+def test_a_hole_named_in_its_first_row_only_has_the_rows_below(read, campaign, tmp_path, merged):
+    log, survey = in_first_row(campaign.log()), in_first_row(with_survey(campaign))
+    if merged:
+        openpyxl = pytest.importorskip("openpyxl")
+        book = openpyxl.Workbook()
+        for row in (LOG, *log):
+            book.active.append([cell if cell != "" else None for cell in row])
+        for k in range(2, len(log) + 2, 2):
+            book.active.merge_cells(start_row=k, end_row=k + 1, start_column=1, end_column=1)
+        book.save(tmp_path / "log.xlsx")
+        given = tmp_path / "log.xlsx"
+        collars = tmp_path / "collar.csv"
+        collars.write_text(table(COLLAR, campaign.collars()), encoding="utf-8")
+        found = read_boreholes(collars, None, [given])
+        assert of(found, "io.holes-from-above")[0].reason.params["count"] == 40
+    else:
+        found = read(survey=table(SURVEY, survey), log=table(LOG, log))
+        assert [issue.reason.params["count"] for issue in of(found, "io.holes-from-above")] == [80, 40]
+    assert codes(found) - {"io.dip-sign-taken"} == {"io.holes-from-above"}
+    whole = read(survey=table(SURVEY, with_survey(campaign)))
+    np.testing.assert_array_equal(
+        take_contacts(found, base="clay").points.xyz, take_contacts(whole, base="clay").points.xyz
+    )
+
+
+def test_a_name_that_is_missing_among_others_is_not_made_up(read, campaign):
+    log = campaign.log()
+    log[31] = ("", *log[31][1:])
+    found = read(log=table(LOG, log))
+    (empty,) = of(found, "io.cell-empty")
+    assert (empty.row, empty.column) == (33, "hole")
+
+
+def test_a_block_that_lost_its_name_does_not_join_the_one_above(read, campaign):
+    log = in_first_row(campaign.log())
+    log[30] = ("", *log[30][1:])
+    found = read(log=table(LOG, log))
+    assert [issue.row for issue in of(found, "io.cell-empty")] == [32, 33]
+    assert of(found, "io.holes-from-above")[0].reason.params["count"] == 39
