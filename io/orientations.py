@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.messages import message, plural_message
 from geofit.data.site import ImportIssue, Orientations
 from geofit.geometry.attitudes import attitudes
 from geofit.io.axes import Region, check_axes
@@ -17,11 +17,14 @@ from geofit.io.columns import ORIENTATIONS
 from geofit.io.journal import Journal
 from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source
-from geofit.io.tables import first_names
+from geofit.io.tables import first_names, parse_numbers
 
 __all__ = ["load_orientations", "read_orientations"]
 
 Floats = NDArray[np.float64]
+
+#: Degrees by which strike and azimuth may fail to be at right angles, and dips below which they are hard to measure.
+STRIKE, FLAT = 15.0, 5.0
 
 
 def read_orientations(path: str | Path, horizon: str = "") -> tuple[Orientations, tuple[ImportIssue, ...]]:
@@ -97,6 +100,7 @@ def _attitudes(rows: Rows) -> tuple[Floats, Floats]:
     dip = rows.numbers("dip")
     if "azimuth" in rows.columns:
         azimuth = rows.numbers("azimuth")
+        _compare_strikes(rows, azimuth, dip)
     else:
         azimuth = rows.numbers("strike") + 90.0
         rows.journal.add(
@@ -124,6 +128,33 @@ def _attitudes(rows: Rows) -> tuple[Floats, Floats]:
             message("io.give-azimuth", "Give degrees from north."),
         )
     return azimuth % 360.0, dip
+
+
+def _compare_strikes(rows: Rows, azimuth: Floats, dip: Floats) -> None:
+    """List that strikes and azimuths contradict each other, whichever of its two directions a strike has."""
+    if "strike" not in rows.columns:
+        return
+    # A strike such as N30E is not compared: the row has its azimuth.
+    strike, _ = parse_numbers(rows.table.columns[rows.columns["strike"]], rows.table.decimal)
+    strike = strike * rows.factors.get("strike", 1.0)
+    apart = np.abs((azimuth - strike) % 180.0 - 90.0)
+    wrong = np.flatnonzero((apart > STRIKE) & (dip >= FLAT) & rows.ok)
+    if len(wrong):
+        first = int(wrong[0])
+        reason = plural_message(
+            "io.strike-contradicts-azimuth",
+            "In {count} row the strike and the azimuth of the dip are not at right angles: {strike:g} and "
+            "{azimuth:g} degrees",
+            "In {count} rows the strike and the azimuth of the dip are not at right angles, first in row {row}: "
+            "{strike:g} and {azimuth:g} degrees",
+            count=len(wrong),
+            row=int(rows.line[first]),
+            strike=strike[first],
+            azimuth=azimuth[first],
+        )
+        remedy = message("io.azimuth-is-used", "The azimuth is used; correct whichever is wrong.")
+        column = rows.table.header[rows.columns["strike"]]
+        rows.journal.add("warning", rows.file, reason, remedy, row=int(rows.line[first]), column=column)
 
 
 def _from_normals(rows: Rows) -> tuple[Floats, Floats]:
