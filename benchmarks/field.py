@@ -25,8 +25,8 @@ from geofit import FitSettings, GeofitError, HorizonFit, PointSet, fit_horizon
 from geofit.prediction.kriging import krige_left_out
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
-from field_page import METHODS, Folds, Row, folds_table, write_folds, write_page
-from peers.gp import KERNELS, fit_process
+from field_page import METHODS, Folds, Row, folds_table, methods_table, write_folds, write_page
+from peers.gp import KERNELS, Process, fit_process
 from peers.pspline import PSpline
 from peers.smooth_plate import smooth_plate
 from realdata.score import folds, one_a_place, thin_plate
@@ -42,6 +42,8 @@ NOISES, SPACINGS = (0.01, 0.05, 0.15, 0.3), (2.0, 6.0, 15.0, 30.0)
 SPANS, PENALTY = 50, 0.01
 #: Timed fits of scattered points.
 FITS = 3
+#: Draws from the process that suits a real horizon best, and the points of horizons that are drawn, at least and most.
+DRAWS, DRAWN_POINTS = 3, (20, 200)
 Fitted = TypeVar("Fitted")
 
 
@@ -244,21 +246,39 @@ def real(keys: list[str], page: bool = False) -> None:
     # One thread per process: two processes share two cores, and sums are the same on every machine.
     os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
     names = [(key, name) for key in keys for name in SETS[key](folder).site.horizons]
+    draws = [(*of, draw) for draw in range(DRAWS) for of in names]
     with ProcessPoolExecutor(PROCESSES, mp_context=multiprocessing.get_context("spawn")) as pool:
         lines = list(pool.map(_folds, *zip(*names, strict=True)))
-    print("\n".join(folds_table(lines)))
+        print("\n".join(folds_table(lines)), flush=True)
+        drawn = [line for line in pool.map(_folds_of_draw, *zip(*draws, strict=True)) if line is not None]
+    print("\n".join(methods_table(drawn)))
     if page:
-        write_folds(lines, DOCS)
+        write_folds(lines, drawn, DRAWS, DOCS)
 
 
 def _folds(key: str, name: str) -> Folds:
     """Predict each fold of a horizon by methods that estimate their parameters without it."""
     real_set = SETS[key](data_folder())
     points = real_set.site.horizons[name]
-    fold, area, z = folds(points), rectangle(points.xyz), points.xyz[:, 2]
-    plane = points.xyz[:, :2] - points.xyz[:, :2].mean(axis=0)
+    return _scored(f"{real_set.title}: {name}", points)
+
+
+def _folds_of_draw(key: str, name: str, draw: int) -> Folds | None:
+    """Do so with elevations drawn from the process that suits the horizon best; None for too few or many points."""
+    points = SETS[key](data_folder()).site.horizons[name]
+    points = points[np.sort(np.unique(points.xyz[:, :2], axis=0, return_index=True)[1])]
+    if not DRAWN_POINTS[0] <= len(points) <= DRAWN_POINTS[1]:
+        return None
+    plane, z = _plane(points), points.xyz[:, 2]
+    truth = _likeliest(plane, z, 1)
+    drawn = truth.draw(plane, z, draw)
+    return _scored(name, PointSet(np.column_stack([points.xyz[:, :2], drawn]), hole=points.hole), truth)
+
+
+def _scored(title: str, points: PointSet, truth: Process | None = None) -> Folds:
+    fold, area, z, plane = folds(points), rectangle(points.xyz), points.xyz[:, 2], _plane(points)
     groups = [np.flatnonzero(fold == k) for k in np.unique(fold)]
-    found = {method: np.full(len(z), np.nan) for method in METHODS}
+    found = {method: np.full(len(z), np.nan) for method in (*METHODS, "truth")}
     for group in groups:
         rest = np.setdiff1d(np.arange(len(z)), group)
         there = points.xyz[group, :2]
@@ -266,18 +286,27 @@ def _folds(key: str, name: str) -> Folds:
             surface = fit_horizon(points[rest], FitSettings(), area)
             found["geofit"][group] = surface.elevation(*there.T)
         except GeofitError as error:
-            print(f"{real_set.title}: {name}: {error}", flush=True)
+            print(f"{title}: {error}", flush=True)
         found["thin plate"][group] = thin_plate(points.xyz[rest], there)
         found["smoothing plate"][group] = smooth_plate(np.column_stack(one_a_place(points.xyz[rest])), there)
         for drift, method in enumerate(("GP, constant", "GP, plane")):
-            processes = (fit_process(plane[rest], z[rest], kernel, drift) for kernel in KERNELS)
-            process = min(processes, key=lambda one: one.value)
+            process = _likeliest(plane[rest], z[rest], drift)
             found[method][group] = process.predict(plane[rest], z[rest], plane[group])[0]
+        if truth is not None:
+            found["truth"][group] = truth.predict(plane[rest], z[rest], plane[group])[0]
     with suppress(np.linalg.LinAlgError):  # coincident points; the page shows a dash
         found["kriging"][:] = krige_left_out(plane, z, groups)
     known = np.isfinite(found["geofit"])
-    errors = tuple(rms((found[method] - z)[known]) if known.any() else np.nan for method in METHODS)
-    return Folds(f"{real_set.title}: {name}", len(z), int((~known).sum()), errors)
+    *errors, of_truth = (rms((one - z)[known]) if known.any() else np.nan for one in found.values())
+    return Folds(title, len(z), int((~known).sum()), tuple(errors), of_truth)
+
+
+def _plane(points: PointSet) -> np.ndarray:
+    return points.xyz[:, :2] - points.xyz[:, :2].mean(axis=0)
+
+
+def _likeliest(plane: np.ndarray, z: np.ndarray, drift: int) -> Process:
+    return min((fit_process(plane, z, kernel, drift) for kernel in KERNELS), key=lambda one: one.value)
 
 
 def main() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-__all__ = ["METHODS", "Folds", "Row", "folds_table", "write_folds", "write_page"]
+__all__ = ["METHODS", "Folds", "Row", "folds_table", "methods_table", "write_folds", "write_page"]
 
 _HEAD = """# Errors of the field on seeded sites
 
@@ -30,6 +30,15 @@ variogram from all points of a set that is too large for one per fold.) The erro
 the points where geofit returns an elevation; "none" counts the other points. The last column is geofit's error divided
 by the smallest error of the reference methods, which is known only in retrospect. The second table applies the same
 measure to every method. A dash marks an error that does not exist: kriging has no solution for coincident points.
+
+"""
+_DRAWN_HEAD = """
+## How near a method can come
+
+The reference that turns out best on a line owes part of that to chance, so a ratio near 1 on every line is out of
+reach. To see how far, {draws} sets of elevations were drawn at the places of each horizon of 20 to 200 points, from the
+Gaussian process that is likeliest there (kernel, range, nugget and plane). Kriging with that covariance is the best
+linear prediction there is; its ratio to the best of the five references is in the last row.
 
 """
 _TRIED = """
@@ -421,6 +430,13 @@ _TRIES = (
     (
         "noise of a core measured against the larger of both fields' relief",
         "the 250 sites: 46 cores not exact to 43",
+        "on named sections, else within three times the interior tolerance",
+    ),
+    (
+        "noise of a core that is not drawn on sections measured against the deviation of its points from their plane",
+        "700 sites: the same; six cores of 400 points with 1 m of noise on 7 m of relief, 200 m around, are no longer "
+        "interpolated: error 0.59 to 0.69 times that of before on four, 1.00 and 1.09 on two; Copper Creek, bx 155 m "
+        "to 146 m",
         "yes",
     ),
     (
@@ -459,16 +475,25 @@ METHODS = ("geofit", "thin plate", "smoothing plate", "kriging", "GP, constant",
 
 @dataclass(frozen=True)
 class Folds:
-    """One real horizon: number of points, of those without an elevation, and RMS error of each method, metres."""
+    """One horizon: number of points, of those without an elevation, and RMS error of each method, metres.
+
+    ``truth`` is that of kriging with the covariance that the elevations were drawn from; nan for measured ones.
+    """
 
     title: str
     points: int
     none: int
     errors: tuple[float, ...]
+    truth: float = np.nan
 
     def ratio(self, method: int) -> float:
         """Return the error of a method divided by the smallest error of the others; nan if it has none."""
         return self.errors[method] / float(np.nanmin([e for k, e in enumerate(self.errors) if k != method]))
+
+    @property
+    def ratio_of_truth(self) -> float:
+        """The error of kriging with the truth's covariance divided by the smallest of the reference methods."""
+        return self.truth / float(np.nanmin(self.errors[1:]))
 
 
 def folds_table(lines: Sequence[Folds]) -> list[str]:
@@ -481,24 +506,29 @@ def folds_table(lines: Sequence[Folds]) -> list[str]:
         cells = [*(f"{error:.3g}" for error in line.errors), f"{line.ratio(0):.2f}"]
         shown = " | ".join("–" if cell == "nan" else cell for cell in cells)
         rows.append(f"| {line.title} | {line.points} | {line.none} | {shown} |")
-    rows += [
-        "",
-        "| method | lines | ratio to the best: median | geometric mean | worst | at most 1.02 | at most 1.15 |",
-    ]
+    return [*rows, "", *methods_table(lines)]
+
+
+def methods_table(lines: Sequence[Folds]) -> list[str]:
+    """Return the lines of a table of the methods."""
+    rows = ["| method | lines | ratio to the best: median | geometric mean | worst | at most 1.02 | at most 1.15 |"]
     rows.append("| --- |" + " ---: |" * 6)
-    for k, method in enumerate(METHODS):
-        ratios = np.array([line.ratio(k) for line in lines])
-        ratios = ratios[np.isfinite(ratios)]
-        rows.append(
-            f"| {method} | {len(ratios)} | {np.median(ratios):.2f} | {np.exp(np.log(ratios).mean()):.2f} | "
-            f"{ratios.max():.4g} | {np.mean(ratios <= 1.02):.0%} | {np.mean(ratios <= 1.15):.0%} |"
-        )
+    of_methods = {method: [line.ratio(k) for line in lines] for k, method in enumerate(METHODS)}
+    of_methods["kriging with the truth's covariance"] = [line.ratio_of_truth for line in lines]
+    for method, given in of_methods.items():
+        ratios = np.array(given)[np.isfinite(given)]
+        if len(ratios):
+            rows.append(
+                f"| {method} | {len(ratios)} | {np.median(ratios):.2f} | {np.exp(np.log(ratios).mean()):.2f} | "
+                f"{ratios.max():.4g} | {np.mean(ratios <= 1.02):.0%} | {np.mean(ratios <= 1.15):.0%} |"
+            )
     return rows
 
 
-def write_folds(lines: Sequence[Folds], docs: Path) -> None:
+def write_folds(lines: Sequence[Folds], drawn: Sequence[Folds], draws: int, docs: Path) -> None:
     """Write ``real_folds.md`` into the folder of the documentation."""
-    (docs / "real_folds.md").write_text(_FOLDS_HEAD + "\n".join(folds_table(lines)) + "\n", encoding="utf-8")
+    parts = [_FOLDS_HEAD, "\n".join(folds_table(lines)), "\n", _DRAWN_HEAD.format(draws=draws)]
+    (docs / "real_folds.md").write_text("".join([*parts, "\n".join(methods_table(drawn)), "\n"]), encoding="utf-8")
 
 
 def write_page(rows: Sequence[Row], seeds: tuple[int, int], docs: Path) -> None:

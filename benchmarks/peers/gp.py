@@ -54,6 +54,16 @@ class Process:
         sill = float((z - f @ b) @ (solved[:, 0] - solved[:, 1:] @ b)) / (len(z) - f.shape[1])
         return mean, np.sqrt(np.maximum(sill * variance, 0.0))
 
+    def draw(self, plane: np.ndarray, z: np.ndarray, seed: int) -> np.ndarray:
+        """Return other values (n,) at the places, of this process with the drift and the sill that it has on ``z``."""
+        system = self.covariance(plane, plane)
+        system.flat[:: len(z) + 1] += self.nugget
+        lower, f = cholesky(system, lower=True), _drift(plane, self.drift)
+        half = solve_triangular(lower, np.column_stack([z, f]), lower=True)
+        b = np.linalg.lstsq(half[:, 1:], half[:, 0], rcond=None)[0]
+        sill = float(np.square(half[:, 0] - half[:, 1:] @ b).sum()) / (len(z) - f.shape[1])
+        return f @ b + np.sqrt(sill) * (lower @ np.random.default_rng(seed).normal(size=len(z)))
+
     def left_out(self, plane: np.ndarray, z: np.ndarray, groups: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Return the (n,) errors at the points of each group left out, and their standard deviations; else nan.
 

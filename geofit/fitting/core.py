@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from geofit.data.errors import ExactnessError
+from geofit.data.long_arrays import everywhere, spread
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
@@ -35,7 +36,7 @@ from geofit.fitting.core_patch import (
     without_repeats,
 )
 from geofit.fitting.core_relief import relief_of_core
-from geofit.fitting.field import FieldChoice, Smoothed
+from geofit.fitting.field import FieldChoice, Smoothed, plane_trend
 from geofit.fitting.knots import graded_breaks, neighbour_pairs, some_breaks
 from geofit.fitting.net import Net, Periphery, cap_for, in_patches, smoothed
 from geofit.fitting.parametrize import Parametrization
@@ -69,7 +70,7 @@ RESOLVED = 0.03
 #: The same where this share of the points is on named sections: those are drawn, and what varies along them is relief.
 RESOLVED_DRAWN, DRAWN = 0.2, 0.9
 #: The same for noise within these shares of the interior tolerance: what is far below it bends no surface visibly.
-LITTLE = ((1.0, 0.05), (0.3, 0.2))
+LITTLE = ((3.0, RESOLVED), (1.0, 0.05), (0.3, 0.2))
 #: Spans between neighbours of one section, as a share of their distance, where knots run through the whole surface.
 ALONG = 1.8
 #: No finer functions act on a core whose knots run through the whole surface.
@@ -282,9 +283,10 @@ def _refuse_noise(core: Core, drawn: float) -> None:
         If it is not.
     """
     field = core.field if core.relief is None else core.relief.field
-    spread, tolerance = max(field.spread, core.field.spread), core.settings.interior_tolerance
-    resolved = (RESOLVED_DRAWN if drawn >= DRAWN else RESOLVED) * spread
-    limit = max(resolved, *(min(share * tolerance, part * spread) for share, part in LITTLE))
+    relief, tolerance = max(field.spread, core.field.spread), core.settings.interior_tolerance
+    # Of points that are not drawn, the core's own relief counts: steep relief around it resolves no noise in it.
+    resolved = RESOLVED_DRAWN * relief if drawn >= DRAWN else RESOLVED * min(relief, _relief(core))
+    limit = max(resolved, *(min(share * tolerance, part * relief) for share, part in LITTLE))
     if field.noise <= limit:
         return
     if _near_noise(core) > max(limit, SHARED * field.noise):
@@ -293,9 +295,17 @@ def _refuse_noise(core: Core, drawn: float) -> None:
                 "fitting.points-support-to-noise",
                 "its points agree only to about {noise:.3g} m, while their height varies by about {spread:.3g} m",
                 noise=field.noise,
-                spread=spread,
+                spread=_relief(core),
             )
         )
+
+
+def _relief(core: Core) -> float:
+    """Return the deviation of a core's points from their plane, metres."""
+    inside = np.flatnonzero(core.inside)
+    plane, value = core.data.plane[inside], core.data.value[inside]
+    trend = plane_trend(plane, value, everywhere(1.0, len(inside)))
+    return spread(value - trend[0] - plane @ trend[1:])
 
 
 def _near_noise(core: Core) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from scipy.interpolate import RBFInterpolator
@@ -158,3 +160,19 @@ def test_a_core_keeps_relief_that_the_field_of_all_points_takes_for_noise(seed):
     # Nor do the holes around contradict each other: the surface meets them.
     assert surface.accuracy.passed
     assert np.median(np.abs(surface.accuracy.residuals[~surface.core])) < 0.1
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_steep_relief_around_a_core_does_not_make_its_noise_small(seed):
+    rng = np.random.default_rng(seed)
+    core, around = rng.uniform((600, 900), (1100, 1400), (400, 2)), rng.uniform((0, 0), (1600, 2200), (60, 2))
+    around = around[np.abs(around - (850, 1150)).max(axis=1) > 350][:30]
+    waves = 10 * np.sin(2 * np.pi * core @ (1, 0.4) / 220)
+    z = 1400 + np.append(waves + rng.normal(0, 1.0, 400), rng.normal(0, 200.0, len(around)))
+    surface = geofit.fit_horizon(geofit.PointSet(np.column_stack([np.concatenate([core, around]), z])))
+    # A surface through these points would be off by 1 m between them, not by 0.6 m.
+    assert surface.partition.lost
+    assert "agree only to about 1" in str(surface.partition.reason)
+    assert re.search(r"varies by about [67]\.?\d* m", str(surface.partition.reason)), (
+        "the relief of the core, not of all"
+    )
