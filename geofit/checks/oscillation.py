@@ -182,7 +182,7 @@ def _left_out(
     to_nearest = np.linalg.norm(places - points[near[:, 0]], axis=1)
     for column in range(AROUND):
         np.maximum.at(gap, near[:, column], to_nearest)
-    distance, others = tree.query(points, k=min(FAR, len(points)))
+    distance, others = (np.asarray(found) for found in tree.query(points, k=min(FAR, len(points))))
     left = (distance >= 0.999 * gap[:, None]) & (others != np.arange(len(points))[:, None])
     order = np.argsort(~left, axis=1, kind="stable")[:, :NEAR]
     around = _Around.of(feet, normals, np.take_along_axis(others, order, axis=1), points, normals)
