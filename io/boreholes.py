@@ -393,7 +393,7 @@ def _read_log(
     rows = read_rows(source, INTERVALS, journal)
     code, top, base = np.array(rows.text("code")), rows.numbers("from"), rows.numbers("to")
     lower_only = "from" not in rows.columns
-    name = np.array(rows.require_known("hole", rows.holes(base), collars, "collar table"))
+    name = np.array(rows.require_known("hole", rows.holes(base if lower_only else top), collars, "collar table"))
     end = np.array([collars[h].end if h in collars else np.nan for h in name])
     mouth = np.array([collars[h].xyz[2] if h in collars else np.nan for h in name])
     if _by_elevation(rows, name, top, base, mouth):

@@ -73,24 +73,22 @@ class Rows:
         written = cells.labels() if isinstance(cells, BigColumn) else Labels.of(cells)
         found = written.renamed([_cleaned(cell) for cell in written.table])
         if required and "" in found.table:
-            empty = message("io.cell-empty", "The {role} is empty", role=role)
-            for i in np.flatnonzero(found.codes == found.table.index("")).tolist():
-                self.reject(i, role, empty, message("io.complete-the-cell", "Complete the cell."))
+            self._reject_empty(role, np.flatnonzero(found.codes == found.table.index("")).tolist())
         return found
 
     def holes(self, depth: Floats) -> list[str]:
-        """Return the hole of each row of a log; its name may stand in its first row alone, as in merged cells.
+        """Return the hole of each row of a log.
 
-        So it does where no name stands twice. A row without a name then belongs to the hole above it, if its ``depth``
-        (n,) is greater than the one above.
+        If no name occurs twice, each hole is named in its first row alone, as in merged cells: a row without a name
+        then belongs to the hole above if its ``depth`` (n,) exceeds the previous one. Other rows without a name are
+        rejected.
         """
         names = self.text("hole", required=False)
-        given = [name for name in names if name]
-        if len(given) == len(names) or len(set(given)) < len(given):
-            return self.text("hole")
+        empty = [i for i, name in enumerate(names) if not name]
+        once = len(set(names) - {""}) == len(names) - len(empty)
         filled = 0
-        for i in range(1, len(names)):
-            if not names[i] and names[i - 1] and depth[i] > depth[i - 1]:
+        for i in empty if once else ():
+            if i and names[i - 1] and depth[i] > depth[i - 1]:
                 names[i] = names[i - 1]
                 filled += 1
         if filled:
@@ -102,9 +100,7 @@ class Rows:
             )
             remedy = message("io.repeat-hole-names", "To be sure, write the name of the hole in every row.")
             self.journal.add("warning", self.file, reason, remedy, column=self.table.header[self.columns["hole"]])
-        for i in [i for i, name in enumerate(names) if not name]:
-            reason = message("io.cell-empty", "The {role} is empty", role="hole")
-            self.reject(i, "hole", reason, message("io.complete-the-cell", "Complete the cell."))
+        self._reject_empty("hole", [i for i in empty if not names[i]])
         return names
 
     def numbers(self, role: str, *, required: bool = True, no_data: bool = False) -> Floats:
@@ -300,6 +296,11 @@ class Rows:
             column=first.column if first else None,
             value=first.value if first else None,
         )
+
+    def _reject_empty(self, role: str, rows: Iterable[int]) -> None:
+        empty = message("io.cell-empty", "The {role} is empty", role=role)
+        for i in rows:
+            self.reject(i, role, empty, message("io.complete-the-cell", "Complete the cell."))
 
     def _list(self, severity: Severity, i: int, role: str, reason: Message, remedy: Message) -> None:
         j = self.columns.get(role)

@@ -485,6 +485,13 @@ def test_a_block_that_lost_its_name_does_not_join_the_one_above(read, campaign):
     assert of(found, "io.holes-from-above")[0].reason.params["count"] == 39
 
 
+def test_nor_does_it_join_a_shallow_hole(read, campaign):
+    log = in_first_row(campaign.log())
+    log[28:31] = [(campaign.names[14], 0.0, 5.0, "clay"), ("", 0.0, 20.0, "clay")]
+    found = read(log=table(LOG, log))
+    assert [issue.row for issue in of(found, "io.cell-empty")] == [31, 32]
+
+
 # Attitudes
 
 
