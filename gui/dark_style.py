@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from PySide6.QtCore import QRect
 from PySide6.QtGui import QColor, QPainter, QPalette
-from PySide6.QtWidgets import QStyle, QStyleOption, QStyleOptionComplex, QWidget
+from PySide6.QtWidgets import QStyle, QStyleOption, QStyleOptionComplex, QTabBar, QWidget
 
 from geofit.gui.style import Style
-from geofit.gui.tab_style import mark_tab
 
-__all__ = ["DarkStyle"]
+__all__ = ["DarkStyle", "mark_tab"]
 
 _Primitive, _Control, _Complex = QStyle.PrimitiveElement, QStyle.ControlElement, QStyle.ComplexControl
 _PRIMITIVES = {
@@ -18,6 +18,9 @@ _PRIMITIVES = {
 }  # fmt: skip
 _CONTROLS = {_Control.CE_ShapedFrame}
 _COMPLEX = {_Complex.CC_SpinBox, _Complex.CC_ComboBox}
+_SOUTH = {QTabBar.Shape.RoundedSouth, QTabBar.Shape.TriangularSouth}
+#: Pixels of the line at the tab in front.
+_MARK = 2
 #: Fusion draws its frames in the window's colour divided by 1.4: this gives a grey of 3 to 1 against the fields.
 _FRAMES = QColor("#8d99a6")
 
@@ -69,3 +72,13 @@ class DarkStyle(Style):
         if control in _COMPLEX:
             option.palette = self._framed
         super().drawComplexControl(control, option, painter, widget)
+
+
+def mark_tab(element: QStyle.ControlElement, option: QStyleOption, painter: QPainter, widget: QWidget | None) -> None:
+    """Underline the tab in front at its free edge: its ground hardly differs from that of the others."""
+    if element != _Control.CE_TabBarTabShape or not option.state & QStyle.StateFlag.State_Selected:
+        return
+    south = isinstance(widget, QTabBar) and widget.shape() in _SOUTH
+    box = option.rect
+    edge = box.bottom() - _MARK if south else box.top()
+    painter.fillRect(QRect(box.left() + 2, edge, box.width() - 4, _MARK), option.palette.highlight())

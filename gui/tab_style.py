@@ -1,22 +1,21 @@
 """Tabs that stand close together, the one in front marked on a dark ground.
 
-A style of tab bars only, set once they are made: a style of the application that answered for lengths would be called
-thousands of times a window, and for widgets that Qt has only begun to make.
+Qt requests lengths from the application's style thousands of times per window, also for widgets whose construction is
+incomplete. This style is therefore set on finished tab bars only.
 """
 
 from __future__ import annotations
 
-from PySide6.QtCore import QRect
-from PySide6.QtGui import QPainter, QPalette
-from PySide6.QtWidgets import QProxyStyle, QStyle, QStyleOption, QTabBar, QWidget
+from PySide6.QtGui import QPainter
+from PySide6.QtWidgets import QProxyStyle, QStyle, QStyleOption, QWidget
 
-__all__ = ["TabStyle", "mark_tab"]
+from geofit.gui.dark_style import mark_tab
+from geofit.gui.theme import is_dark
 
-_SOUTH = {QTabBar.Shape.RoundedSouth, QTabBar.Shape.TriangularSouth}
+__all__ = ["TabStyle"]
+
 #: Pixels of a tab beyond its name.
 _ROOM = 14
-#: Pixels of the line at the tab in front.
-_MARK = 2
 
 
 class TabStyle(QProxyStyle):
@@ -38,15 +37,5 @@ class TabStyle(QProxyStyle):
     ) -> None:
         """Draw a tab; on a dark ground mark the one in front."""
         super().drawControl(element, option, painter, widget)
-        if option.palette.color(QPalette.ColorRole.Window).lightness() < 128:
+        if is_dark(option.palette):
             mark_tab(element, option, painter, widget)
-
-
-def mark_tab(element: QStyle.ControlElement, option: QStyleOption, painter: QPainter, widget: QWidget | None) -> None:
-    """Underline the tab in front at its free edge: its ground hardly differs from that of the others."""
-    if element != QStyle.ControlElement.CE_TabBarTabShape or not option.state & QStyle.StateFlag.State_Selected:
-        return
-    south = isinstance(widget, QTabBar) and widget.shape() in _SOUTH
-    box = option.rect
-    edge = box.bottom() - _MARK if south else box.top()
-    painter.fillRect(QRect(box.left() + 2, edge, box.width() - 4, _MARK), option.palette.highlight())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from panel_samples import SITE, sample_site
 from PySide6.QtCore import QByteArray
-from PySide6.QtWidgets import QTabBar, QToolBar
+from PySide6.QtWidgets import QStyle, QTabBar, QToolBar
 
 from geofit.data.site import Site
 from geofit.gui.layout import BOTTOM
@@ -105,10 +105,12 @@ def test_every_tab_below_the_view_of_a_small_window_can_be_read(app, theme):
     app.idle()
     bar = max((bar for bar in app.window.findChildren(QTabBar) if bar.isVisible()), key=QTabBar.count)
     assert bar.count() > 10
+    # Qt cuts names as soon as the tabs do not have the room that the style gives them.
+    room = bar.style().pixelMetric(QStyle.PixelMetric.PM_TabBarTabHSpace, None, bar)
     for k in range(bar.count()):
         name = bar.tabText(k)
         assert bar.tabRect(k).right() < bar.width(), name
-        assert bar.fontMetrics().horizontalAdvance(name) < bar.tabRect(k).width(), name
+        assert bar.fontMetrics().horizontalAdvance(name) + room <= bar.tabRect(k).width(), name
 
 
 def test_a_button_unfolds_a_panel_and_folds_all_away_again(app):

@@ -118,7 +118,7 @@ def test_the_tab_in_front_is_marked_in_the_dark(qapp, qtbot):
 
 
 def test_qt_asks_python_for_nothing_while_it_makes_a_widget(theme, qapp, qtbot):
-    """It would wrap thousands of half-made widgets a window; one ended in a crash."""
+    """PySide would wrap thousands of incomplete widgets per window."""
     asked = []
     sys.setprofile(lambda frame, event, _: event == "call" and asked.append(frame.f_code.co_qualname))
     try:
