@@ -41,7 +41,7 @@ class ChangeData(Command):
         )  # fmt: skip
 
     def on(self, state: State) -> State:  # noqa: D102
-        # A site may have bodies alone; horizons that are gone are asked about.
+        # A site may have bodies alone; one that loses all its horizons is an error.
         if state.order and not self.settings:
             raise DocumentError(message("project.data-no-horizon", "The new data have no horizon."))
         order = [name for name in state.order if name in self.settings]

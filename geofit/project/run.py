@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from geofit.site.separate import Contradiction
     from geofit.site.throw import FaultCut
 
-__all__ = ["Form", "Reports", "RunResult", "run_horizons", "write_reports"]
+__all__ = ["Form", "Reports", "RunResult", "report_paths", "run_horizons", "write_reports"]
 
 Form = Literal["html", "pdf", "json"]
 #: Folder of a run's results in which fits are kept until all is written.
@@ -342,6 +342,11 @@ class Reports:
     results: tuple[HorizonResult, ...]
 
 
+def report_paths(folder: Path, forms: Iterable[Form]) -> dict[Form, Path]:
+    """Return the file of each form of a report in a folder."""
+    return {form: folder / f"report.{form}" for form in forms}
+
+
 def write_reports(
     results: Sequence[HorizonResult],
     out: Path,
@@ -435,8 +440,11 @@ def write_reports(
     whole, font = draw_site(made, language) if pictured else Pictures({}, None, None), _font_warning(made)
     tell(progress, "report", 0.95)
     _write_report(report, whole, images, out, language, font, forms, bodies)
-    files = {form: out / f"report.{form}" for form in forms}
-    return Reports(files, tuple(text for text in (font, *warnings, unordered, whole.missing) if text), tuple(made))
+    return Reports(
+        report_paths(out, forms),
+        tuple(text for text in (font, *warnings, unordered, whole.missing) if text),
+        tuple(made),
+    )
 
 
 def _within(progress: Progress | None, low: float, high: float, name: str = "") -> Progress:

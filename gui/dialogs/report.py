@@ -33,7 +33,7 @@ from geofit.project.body_building import BodyResult
 from geofit.project.building import Given
 from geofit.project.fault_blocks import Blocks
 from geofit.project.reporting import ReportFiles, write_report_files
-from geofit.project.run import Form
+from geofit.project.run import Form, report_paths
 from geofit.report.gather import today
 from geofit.report.result import HorizonResult
 
@@ -67,7 +67,7 @@ class ReportDialog(TaskDialog):
         self.setWindowTitle(self.tr("Accuracy report"))
         self._results = list(results)
         self._path: Path | None = None
-        # What was written from here is replaced unasked.
+        # Files that this dialog has written are replaced without a question.
         self._own: set[Path] = set()
         self.language = QComboBox()
         for code, name in (("en", "English"), ("zh", "中文")):
@@ -159,8 +159,8 @@ class ReportDialog(TaskDialog):
 
     def _write(self) -> None:
         folder = Path(self.folder.text().strip()).expanduser()
-        files = {folder / f"report.{form}" for form in self._chosen()}
-        if not may_replace(sorted(files - self._own), self.windowTitle(), self):
+        files = report_paths(folder, self._chosen()).values()
+        if not may_replace([file for file in files if file not in self._own], self.windowTitle(), self):
             return
         examined = self.examine.isChecked()
         # The model behind the patches is only needed to leave points out, and for the bands of the sections.

@@ -154,12 +154,17 @@ def test_a_file_without_outlines_is_refused_and_another_can_be_chosen(opened, mo
     assert panel.fit_button.isEnabled()
 
 
-def test_a_site_of_bodies_alone(app, sample, tmp_path):
+@pytest.fixture
+def bodies_alone(app, sample, tmp_path):
+    """The sample's site of bodies, copied and opened."""
     for name in ("bodies.toml", "bodies"):
         source = sample / name
         (shutil.copytree if source.is_dir() else shutil.copy)(source, tmp_path / name)
     app.window.files.open(tmp_path / "bodies.toml")
     app.idle()
+
+
+def test_a_site_of_bodies_alone(app, bodies_alone, tmp_path):
     document, panels = app.document, app.window.panels
     assert document.is_open
     assert not document.horizons
@@ -178,12 +183,7 @@ def test_a_site_of_bodies_alone(app, sample, tmp_path):
     app.window.grab().save(str(tmp_path / "alone.png"))
 
 
-def test_the_files_of_a_site_of_bodies_alone_are_read_again(app, sample, tmp_path):
-    for name in ("bodies.toml", "bodies"):
-        source = sample / name
-        (shutil.copytree if source.is_dir() else shutil.copy)(source, tmp_path / name)
-    app.window.files.open(tmp_path / "bodies.toml")
-    app.idle()
+def test_the_files_of_a_site_of_bodies_alone_are_read_again(app, bodies_alone, tmp_path):
     app.window.bodies.fit("", Intervals(("ORE",)), app.window.panels.bodies.form.edited())
     app.idle()
     log = tmp_path / "bodies" / "lithology.csv"
