@@ -433,10 +433,10 @@ _TRIES = (
         "on named sections, else within three times the interior tolerance",
     ),
     (
-        "noise of a core that is not drawn on sections measured against the deviation of its points from their plane",
-        "700 sites: the same; six cores of 400 points with 1 m of noise on 7 m of relief, 200 m around, are no longer "
-        "interpolated: error 0.59 to 0.69 times that of before on four, 1.00 and 1.09 on two; Copper Creek, bx 155 m "
-        "to 146 m",
+        "noise of a core that is not on sections compared with the deviation of the core's points from their plane",
+        "700 sites: no change; six cores (400 points, noise 1 m, relief 7 m, 200 m around the core) are no longer "
+        "interpolated: ratio of the new error to the old one 0.59 to 0.69 on four, 1.00 and 1.09 on two; Copper Creek, "
+        "bx 155 m to 147 m",
         "yes",
     ),
     (

@@ -34,9 +34,9 @@ Bools = NDArray[np.bool_]
 TIMES = 6.0
 #: Points of one spline, and how many are looked at for those that are left when the nearest are left out.
 NEAR, FAR = 10, 32
-#: The nearest of them, whose distance is how wide a gap is.
+#: Nearest points whose mean distance is the width of a gap.
 AROUND = 3
-#: How many of these must be predicted from all around when they are left out: else nothing is known of the gap.
+#: Fewest of these whose left-out error must be known; otherwise the gap is not checked.
 SEEN = 2
 FEWEST = 20
 #: Places that are asked: half of them spread evenly by area, half where the surface bends most. All of ``GAPS`` places,
@@ -92,7 +92,7 @@ def oscillation(
     if not asked.any():
         return None
     least = max(float(np.median(error[known])), surface.settings.interior_tolerance)
-    # What dense points tell of a wide gap next to them has an error that grows with its width.
+    # Across a gap wider than those of the points whose errors are known, the error grows with the width.
     away = np.linalg.norm(places[asked, None] - points[near[asked, :AROUND]], axis=2).mean(axis=1)
     wider = np.maximum(away[:, None] / reach[near[asked]], 1.0)
     allowed = TIMES * np.maximum((error[near[asked]] * wider).max(axis=1), least)

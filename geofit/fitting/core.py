@@ -284,7 +284,8 @@ def _refuse_noise(core: Core, drawn: float) -> None:
     """
     field = core.field if core.relief is None else core.relief.field
     relief, tolerance = max(field.spread, core.field.spread), core.settings.interior_tolerance
-    # Of points that are not drawn, the core's own relief counts: steep relief around it resolves no noise in it.
+    # Noise of points that are not on sections is compared with the core's own relief: steep ground around the core
+    # does not make it smaller.
     resolved = RESOLVED_DRAWN * relief if drawn >= DRAWN else RESOLVED * min(relief, _relief(core))
     limit = max(resolved, *(min(share * tolerance, part * relief) for share, part in LITTLE))
     if field.noise <= limit:

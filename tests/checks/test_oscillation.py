@@ -1,4 +1,4 @@
-"""The check for swings beside dense cores: what their points tell of the wide gaps around has its limits."""
+"""The oscillation check in the wide gaps around a dense core."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def core_with_holes(seed, holes):
 
 @pytest.mark.parametrize(("seed", "holes"), [(8, 14), (134, 14), (84, 8), (110, 8), (121, 8)])
 def test_a_surface_that_is_right_does_not_oscillate_in_the_gaps_around_a_core(seed, holes):
-    # Errors of the dense points, predicted from neighbours 20 m away, were held against gaps of 200 m.
+    # The limit in gaps of 200 m came from errors of dense points that were predicted from 20 m away.
     surface = geofit.fit_horizon(geofit.PointSet(core_with_holes(seed, holes)))
     (check,) = (one for one in surface.accuracy.checks if one.name == "oscillation")
     assert check.passed, check.text
