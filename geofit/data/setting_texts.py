@@ -199,7 +199,7 @@ SETTINGS: Mapping[str, SettingText] = {
         message(
             "data.setting-max-control-points-about",
             "Limit of the surface's size. Automatic: 40 a data point, 15 with a core, between 1,600 and 20,000, and as "
-            "many as it takes to interpolate the core.",
+            "many as it takes to interpolate the core or, without one, to meet the points, up to 120,000.",
         ),
         choices={None: _AUTO},
         number="whole",

@@ -59,7 +59,7 @@ class FitSettings:
         Cap of the refinement and adjustment steps.
     max_control_points : int or None
         Cap of the number of control points; None: 40 a data point, 15 with a core, between 1,600 and 20,000, and as
-        many as it takes to interpolate the core.
+        many as it takes to interpolate the core or, without one, to meet the points, up to 120,000.
     dips : {"check", "fit"}
         Whether dips measured on the horizon are compared with its surface only, or are data of the fit as well: each
         is an observation of the surface's gradient.

@@ -11,7 +11,7 @@ from geofit.data.messages import Message, message
 from geofit.fitting.density import CLOUD
 from geofit.fitting.horizon_fit import HorizonFit, fit_of
 from geofit.fitting.model import Model
-from geofit.fitting.net import Net, crowded
+from geofit.fitting.net import Net
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.skin import regularized_correction
 
@@ -26,8 +26,8 @@ SHARE = 0.7
 def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
     """Adjust locally until sigma is below epsilon or no step helps, and say which.
 
-    Points that are known less accurately than the tolerance are not chased, nor those of a cloud or of data that
-    contradict each other.
+    Points that are known less accurately than the tolerance are not chased, nor those of a cloud, of data that
+    contradict each other, or that contradict a neighbour.
     """
     given, left = model.problem, _left_as_they_are(model)
     for step in range(given.settings.max_iterations + 1):
@@ -48,6 +48,7 @@ def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
             surface = _with_note(surface, left.with_severity("warning"))
             break
         movable = given.kept & ~surface.core
+        movable[given.kept] &= ~model.net.torn
         if not given.settings.strict:
             movable &= ~(given.accuracy > given.settings.interior_tolerance)
         better = pull_to_worst(model.net, given.parametrization, movable, accuracy.residuals)
@@ -78,12 +79,6 @@ def _left_as_they_are(model: Model) -> Message | None:
         )
     # A smoothing that was given may be stiffer than the data ask for.
     if settings.smoothing == "auto" and model.net.field.contradictory:
-        given = model.problem
-        if crowded(model.net.base, given.parametrization.plane[given.kept] / model.net.unit) is not None:
-            return message(
-                "fitting.sigma-of-wide-area",
-                "sigma stays above epsilon: the study area is far wider than the points, so they are not followed",
-            )
         return message(
             "fitting.sigma-of-contradiction",
             "sigma stays above epsilon: data that contradict each other are not met one by one",

@@ -22,7 +22,8 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
 from geofit.fitting.approximate import fixed_by_core
 from geofit.fitting.assemble import carried, multiply_knots
-from geofit.fitting.core_noise import SHARED, near_noise
+from geofit.fitting.caps import cap_for, in_patches
+from geofit.fitting.contradiction import CLIFF, SHARED, near_noise, torn_points
 from geofit.fitting.core_patch import (
     FIELD_SPAN,
     LAID,
@@ -38,8 +39,9 @@ from geofit.fitting.core_patch import (
 from geofit.fitting.core_relief import relief_of_core
 from geofit.fitting.field import FieldChoice, Smoothed, plane_trend
 from geofit.fitting.knots import graded_breaks, neighbour_pairs, some_breaks
-from geofit.fitting.net import Net, Periphery, cap_for, in_patches, smoothed
+from geofit.fitting.net import Net, smoothed
 from geofit.fitting.parametrize import Parametrization
+from geofit.fitting.periphery import Periphery
 from geofit.fitting.resolution import CLOSE, Choice, choose_field, longest_span
 from geofit.fitting.skin import lofted, minimum_norm_correction, refine_knots, ruled, section_lines
 from geofit.fitting.split import Split
@@ -62,8 +64,6 @@ LONGEST_IN_GROUPS = 0.35
 #: Spans below this share of the shortest that points in groups resolve calm a field that would swing: they are kept.
 #: (Spans that divide an area evenly are a little shorter than was asked for.)
 CALMED = 0.9
-#: Slope that two neighbours may ask for beyond the field's own, where not all points of a core can be met.
-CLIFF = 0.5
 #: Noise above this share of the values' spread: points that do not support each other. It does not follow the
 #: tolerances, which may be raised beyond all relief.
 RESOLVED = 0.03
@@ -185,15 +185,18 @@ def fit_with_core(
     if not outer.any():
         total, frozen = through.coefficients + data.over_trend(space), fixed_by_core(outer_of(space), core).ravel()
         return Net(
-            space, base, total, frozen, None, rule, data.unit, field, 0, settings.interior_tolerance, notes, relief
-        )
+            space, base, total, frozen, None, rule, data.unit, field, 0, settings.interior_tolerance,
+            notes, outer, relief,
+        )  # fmt: skip
     refit = settings.seam == "position"
     periphery = Periphery(data, outer, core, field, settings, limits.most, refit, through.held)
     found = periphery.fit(space, Smoothed(through.coefficients, through.plane))
+    torn = np.zeros(len(outer), bool)
+    torn[outer] = found.torn
     total = found.coefficients + data.over_trend(found.space)
     return Net(
         found.space, base, total, found.frozen, core, rule, data.unit, field, found.rounds, found.limit,
-        notes + found.notes, relief,
+        notes + found.notes, torn, relief,
     )  # fmt: skip
 
 
@@ -322,17 +325,10 @@ def _torn(core: Core) -> NDArray[np.bool_]:
     """
     data, chosen = core.data, np.flatnonzero(core.inside)
     torn, loose = np.zeros(len(core.inside), bool), core.between[chosen] | (not core.parametric)
-    if not loose.any():
-        return torn
-    plane, misfit = data.plane[chosen], core.misfit(chosen).reshape(len(chosen), -1)
-    size = np.linalg.norm(misfit, axis=1)
-    first, second = neighbour_pairs(plane).T
-    apart = data.unit * np.linalg.norm(plane[first] - plane[second], axis=1)
-    slope = np.linalg.norm(misfit[first] - misfit[second], axis=1) / np.maximum(apart, 1e-9)
-    for pair in np.argsort(-slope, kind="stable")[: int((slope > CLIFF).sum())]:
-        both = np.array([first[pair], second[pair]])
-        if loose[both].any() and not torn[chosen[both]].any():
-            torn[chosen[both[np.argmax(np.where(loose[both], size[both], -1.0))]]] = True
+    if loose.any():
+        plane, misfit = data.plane[chosen], core.misfit(chosen)
+        size = np.linalg.norm(misfit.reshape(len(chosen), -1), axis=1)
+        torn[chosen] = torn_points(data.unit * plane, misfit, neighbour_pairs(plane), loose, CLIFF, size)
     return torn
 
 

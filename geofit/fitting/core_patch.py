@@ -21,10 +21,11 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
 from geofit.fitting.approximate import RIM, swinging_points
 from geofit.fitting.assemble import carried
+from geofit.fitting.caps import in_patches
 from geofit.fitting.core_relief import CoreRelief
 from geofit.fitting.field import FieldChoice
 from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes
-from geofit.fitting.net import in_patches, smoothed
+from geofit.fitting.net import smoothed
 from geofit.fitting.resolution import longest_span
 from geofit.fitting.skin import OVERSHOOT, Lines, minimum_norm_correction, refine_knots
 from geofit.splines.refined import RefinedSpace, Space

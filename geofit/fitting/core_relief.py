@@ -20,7 +20,7 @@ from geofit.data.long_arrays import everywhere
 from geofit.data.prepared import Preparing
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
-from geofit.fitting.core_noise import SHARED
+from geofit.fitting.contradiction import SHARED
 from geofit.fitting.field import FieldChoice, choose_covariance, plane_trend, smooth
 from geofit.fitting.likelihood import plane_coefficients
 from geofit.fitting.resolution import EVEN, LOUDER, SKETCH, choose_field, even_space, longest_span
@@ -129,7 +129,7 @@ def relief_of_core(
     most : int
         Control points at most.
     near : callable
-        Returns the noise that the core's nearest points show (:func:`geofit.fitting.core_noise.near_noise`), metres.
+        Returns the noise that the core's nearest points show (:func:`geofit.fitting.contradiction.near_noise`), metres.
 
     Notes
     -----

@@ -20,10 +20,10 @@ from numpy.typing import NDArray
 from geofit.data.errors import FitError
 from geofit.data.long_arrays import BLOCK, Rows, blocks, covariance, everywhere, spread, sum_squares
 from geofit.data.messages import message
-from geofit.fitting.likelihood import FINEST, UNSOLVABLE, Likelihood, Slope, plane_coefficients
+from geofit.fitting.likelihood import UNSOLVABLE, Likelihood, Slope, plane_coefficients
 from geofit.fitting.optimum import maximize_over_noise
 from geofit.fitting.slopes import Slopes
-from geofit.fitting.smoothness import ENOUGH, as_smooth, search
+from geofit.fitting.smoothness import as_smooth, search
 from geofit.fitting.weighted_points import WeightedPoints
 from geofit.splines import bspline
 from geofit.splines.matern import MaternPrecision
@@ -47,8 +47,6 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 
-#: Noise above this share of the values' own spread contradicts any tolerance below it.
-CONTRADICTION = 0.5
 #: Standard deviation across a strip, in units of the spacing, below which it counts as a line.
 _NARROW = 0.05
 #: How far the field's space reaches beyond the area, in units, and how fast its spans grow there. Near the free edges
@@ -62,9 +60,10 @@ class FieldChoice:
 
     ``alpha`` is the exponent of the operator (smoothness nu = alpha - 1), ``kappa`` its inverse range per unit,
     ``rho`` the noise's variance relative to the field's, ``stretch`` its direction (see
-    :func:`geofit.splines.matern.metric`). ``contradictory`` states that the data are little else than noise;
-    ``spread`` is the standard deviation of the data about their trend, metres. ``hold`` is the precision with which the
-    plane's slope is held to zero, in units of the noise's (:class:`geofit.fitting.likelihood.Slope`).
+    :func:`geofit.splines.matern.metric`). ``spread`` is the standard deviation of the data about their trend, metres.
+    ``hold`` is the precision with which the plane's slope is held to zero, in units of the noise's
+    (:class:`geofit.fitting.likelihood.Slope`). ``contradictory`` states that the data contradict each other
+    (:func:`geofit.fitting.contradiction.contradict`).
     """
 
     alpha: int
@@ -72,9 +71,9 @@ class FieldChoice:
     rho: float
     stretch: tuple[float, float]
     noise: float
-    contradictory: bool = False
     spread: float = math.inf
     hold: float = 0.0
+    contradictory: bool = False
 
     @property
     def energy(self) -> str:
@@ -238,7 +237,6 @@ def choose_covariance(
     def likelihood(alpha: int) -> Likelihood:
         return Likelihood(wide, alpha, band, right, square, slope, count)
 
-    few = len(plane) < ENOUGH
     if known:
         # Each is searched: the likelihood at its start does not predict its maximum.
         judges = [likelihood(guess.alpha) for guess in known]
@@ -265,10 +263,8 @@ def choose_covariance(
     fields = []
     for optimum in found:
         own = math.sqrt(optimum.variance) if optimum.value < UNSOLVABLE else math.nan
-        # Of an exact plane the noise is what keeps the likelihood finite.
-        contradictory = not few and own > max(CONTRADICTION * scatter, 2 * FINEST)
         covariance = (optimum.alpha, optimum.kappa, optimum.rho, optimum.stretch)
-        field = FieldChoice(*covariance, own, contradictory, scatter, optimum.hold)
+        field = FieldChoice(*covariance, own, scatter, optimum.hold)
         fields.append((field.turned if turned else field, optimum.value))
     return [(field, value) for field, value in fields if value < UNSOLVABLE]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,14 +16,17 @@ from geofit.data.errors import FitError
 from geofit.data.long_arrays import inverse_squares
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data, degree_for
+from geofit.fitting.contradiction import contradict
 from geofit.fitting.density import CLOUD
 from geofit.fitting.field import FieldChoice, choose_covariance, smooth, widened_space
+from geofit.fitting.likelihood import FINEST
 from geofit.fitting.optimum import BEHIND
+from geofit.fitting.smoothness import ENOUGH
 from geofit.fitting.weighted_points import WeightedPoints
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
-__all__ = ["CLOSE", "EVEN", "Choice", "choose_field", "even_space", "longest_span", "sketched_fields"]
+__all__ = ["CLOSE", "EVEN", "Choice", "choose_field", "even_space", "longest_span", "mostly_noise", "sketched_fields"]
 
 Rectangle = tuple[float, float, float, float]
 
@@ -41,6 +44,8 @@ GAIN = 10.0
 OF_POINTS, OF_CONTROL_POINTS = 0.04, 2.0
 #: A field that leaves the data's range by more than this many times that range is tried on so much shorter spans.
 WILD, CALMER = 2.0, 0.75
+#: Noise above this share of the values' own spread may be data that contradict each other.
+CONTRADICTION = 0.5
 #: Control points of a coarser level, as a share of those of the last, and the least of any.
 COARSER, COARSEST = 0.75, 75
 #: How many times the noise of the level before a coarser one may find.
@@ -136,7 +141,7 @@ def choose_field(data: Data, settings: FitSettings, most: int, sketched: Sequenc
     space, field = best.space, best.field
     if data.slopes is not None and len(data.slopes):
         field = choose_covariance(space, points, given, [field], data.trend, data.slopes, field.noise)[0][0]
-    return field, space
+    return replace(field, contradictory=_contradictory(space, field, data)), space
 
 
 def _lengthened(best: Level, coarser: Iterable[TensorSpace], on: Search) -> Level:
@@ -174,6 +179,23 @@ def _wild(level: Level, data: Data) -> bool:
     found = smooth(level.space, level.field, data.weighted, data.trend).coefficients
     # About an exact plane, rounding is all the range there is.
     return bool(np.maximum(found - high, low - found).max() > WILD * max(high - low, level.field.noise))
+
+
+def mostly_noise(field: FieldChoice) -> bool:
+    """Whether a field takes most of the data's relief for noise."""
+    # Of an exact plane the noise is what keeps the likelihood finite.
+    return field.noise > max(CONTRADICTION * field.spread, 2 * FINEST)
+
+
+def _contradictory(space: TensorSpace, field: FieldChoice, data: Data) -> bool:
+    """Whether data of which a field takes most for noise contradict each other."""
+    if len(data.plane) < ENOUGH or not mostly_noise(field):
+        return False
+    if len(data.plane) > CLOUD:
+        return True
+    plane, found = data.plane[:], smooth(space, field, data.weighted, data.trend, data.slopes).coefficients
+    misfit = data.value[:] - space.matrix(plane) @ found
+    return contradict(data.unit * plane, misfit, field.noise, data.accuracy)
 
 
 def _tried(on: Search, space: TensorSpace, field: FieldChoice, needed: float) -> Level | None:

@@ -28,8 +28,9 @@ from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data
 from geofit.fitting.assemble import patches_of
+from geofit.fitting.caps import cap_for
 from geofit.fitting.field import FieldChoice, plane_trend
-from geofit.fitting.net import cap_for, smoothed
+from geofit.fitting.net import smoothed
 from geofit.fitting.parametrize import STEEP, direction_of, plan_box
 from geofit.fitting.request import study_area_of
 from geofit.fitting.resolution import choose_field

@@ -41,7 +41,7 @@ def small_blocks(monkeypatch):
     monkeypatch.setattr(long_arrays, "BLOCK", 7_001)
     monkeypatch.setattr("geofit.fitting.field.BLOCK", 7_001)
     monkeypatch.setattr(density, "CLOUD", 1_000)
-    monkeypatch.setattr("geofit.fitting.net.CLOUD", 1_000)
+    monkeypatch.setattr("geofit.fitting.periphery.CLOUD", 1_000)
     monkeypatch.setattr(strips, "STRIP", 4_000)
     monkeypatch.setattr(residuals, "PART", 8_000)
     monkeypatch.setattr(residuals, "STEP", 3_000)
@@ -249,7 +249,7 @@ def test_every_so_many_rows_of_a_long_array_are_those_of_the_array(monkeypatch):
 
 
 def test_a_cloud_in_memory_is_examined_and_can_have_a_core(monkeypatch):
-    monkeypatch.setattr("geofit.fitting.net.CLOUD", 1_000)
+    monkeypatch.setattr("geofit.fitting.periphery.CLOUD", 1_000)
     xyz = cloud(5_000)
     found = examine(fit_horizon(PointSet(xyz)))
     assert found.left_out[0].groups == 5_000
