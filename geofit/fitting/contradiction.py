@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-__all__ = ["CLIFF", "SHARED", "contradict", "near_noise", "off_neighbours", "torn_points"]
+__all__ = ["CLIFF", "SHARED", "contradict", "near_noise", "neighbours_within", "off_neighbours", "torn_points"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -17,7 +17,7 @@ NEAREST, FEWEST = 3, 20
 SHARED = 0.5
 #: Slope that two neighbours may ask for beyond the field's own.
 CLIFF = 0.5
-#: Points whose plane shows how far another one lies from them.
+#: Points whose plane shows how far another one lies from them, and that are a point's neighbours.
 AROUND = 8
 #: So many times the accuracy that the points state, a field's noise is relief between them.
 BEYOND = 3.0
@@ -104,6 +104,14 @@ def torn_points(
         if loose[both].any() and not torn[both].any():
             torn[both[np.argmax(np.where(loose[both], doubt[both], -1.0))]] = True
     return torn
+
+
+def neighbours_within(plane: Floats, reach: float) -> Ints:
+    """Return (m, 2) pairs of n points nearer to each other than ``reach``: each with its nearest, of very many."""
+    apart, index = (np.asarray(found) for found in KDTree(plane).query(plane, k=AROUND, distance_upper_bound=reach))
+    first, column = np.nonzero(np.isfinite(apart))
+    both = np.column_stack([first, index[first, column]])
+    return np.unique(np.sort(both[both[:, 0] != both[:, 1]], axis=1), axis=0)
 
 
 def off_neighbours(plane: Floats, value: Floats) -> Floats:

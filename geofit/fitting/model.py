@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from geofit.data.accuracy import Conflict, Partition
 from geofit.data.allowance import accuracies
+from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.prepared import Preparing
 from geofit.data.settings import FitSettings
@@ -22,6 +23,7 @@ from geofit.fitting.core import fit_with_core
 from geofit.fitting.field import FieldChoice
 from geofit.fitting.net import Net, approximate_all
 from geofit.fitting.parametrize import Parametrization
+from geofit.fitting.periphery import BLUNDER
 from geofit.fitting.resolution import Choice
 from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
@@ -29,12 +31,20 @@ from geofit.splines.patch import Patch
 from geofit.splines.refined import abscissae, outer_of, padded
 from geofit.surfaces.patch_surface import PatchSurface
 
-__all__ = ["Model", "Problem"]
+__all__ = ["Model", "Problem", "names_of"]
 
 Floats = NDArray[np.float64]
 
+#: Points that a note names.
+NAMED = 5
 #: A move aside that is shorter is rounding, metres.
 STILL = 1e-9
+
+
+def names_of(points: PointSet, rows: NDArray[np.intp]) -> tuple[Message | str, ...]:
+    """Return the names of some points, the first few of many."""
+    names = [points.describe(int(k)) for k in rows[:NAMED]]
+    return tuple([*names, "..."] if len(rows) > NAMED else names)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,11 +91,28 @@ class Problem:
         split = None if self.split.core is None else self.split
         given = gather_points(self.accuracy, self.parametrization, self.settings, active, split, self.slopes, self.unit)
         if split is None:
-            return Model(self, approximate_all(given, self.settings, stage, chosen, sketched))
-        net = fit_with_core(
-            self.points, given, self.parametrization, split, active, self.settings, stage, chosen, sketched
+            net = approximate_all(given, self.settings, stage, chosen, sketched)
+        else:
+            net = fit_with_core(
+                self.points, given, self.parametrization, split, active, self.settings, stage, chosen, sketched
+            )
+        torn = np.flatnonzero(active)[net.torn]
+        return Model(self, replace(net, notes=(*net.notes, *self._torn_notes(torn))))
+
+    def _torn_notes(self, torn: NDArray[np.intp]) -> tuple[Message, ...]:
+        """Name points that were let go."""
+        if not len(torn):
+            return ()
+        note = message(
+            "fitting.neighbours-contradict",
+            "points not met, because they contradict those around them ({count}: {names}); through one of them and a "
+            "close neighbour the surface would be steeper than 45°, or it lies {times:g} times as far from the field "
+            "as most do (strict meets them where knots allow)",
+            count=len(torn),
+            names=names_of(self.points, torn),
+            times=BLUNDER,
         )
-        return Model(self, net)
+        return (note.with_severity("warning"),)
 
     def partition(self) -> Partition:
         """Return the split in map coordinates."""

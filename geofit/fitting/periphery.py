@@ -22,7 +22,7 @@ from geofit.fitting.active_points import Data
 from geofit.fitting.approximate import approximate, fixed_by_core, solved_beside
 from geofit.fitting.assemble import with_knots
 from geofit.fitting.caps import UTMOST, crowded, in_patches
-from geofit.fitting.contradiction import CLIFF, off_neighbours, torn_points
+from geofit.fitting.contradiction import CLIFF, neighbours_within, off_neighbours, torn_points
 from geofit.fitting.density import CLOUD
 from geofit.fitting.field import FieldChoice, Smoothed, precision_band
 from geofit.fitting.likelihood import plane_coefficients
@@ -33,7 +33,7 @@ from geofit.splines.patch import Patch
 from geofit.splines.refined import Space, outer_of
 from geofit.splines.tensor import TensorSpace
 
-__all__ = ["Periphery", "PeripheryFit"]
+__all__ = ["BLUNDER", "Periphery", "PeripheryFit"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -147,10 +147,9 @@ class Periphery:
                 break
             most = min(int(1.5 * most), UTMOST)
         beyond = self._beyond(best.misfit, allowed, limit)
-        torn = int((demand.torn & (beyond > 0)).sum())
-        notes = self._notes(base, np.where(demand.torn, 0.0, beyond), limit, torn, pulled.asked)
-        frozen = self._frozen(best.space)
-        return PeripheryFit(best.space, best.coefficients, frozen, rounds, limit, notes, demand.torn)
+        torn, frozen = demand.torn & (beyond > 0), self._frozen(best.space)
+        notes = self._notes(base, np.where(torn, 0.0, beyond), limit, pulled.asked)
+        return PeripheryFit(best.space, best.coefficients, frozen, rounds, limit, notes, torn)
 
     def _demand(self, space: Space, coefficients: Floats, limit: float, allowed: Floats) -> _Demand:
         """Return which of the points are met how closely, and with spans how short."""
@@ -159,13 +158,12 @@ class Periphery:
         off = value - space.matrix(plane) @ coefficients
         excused, torn = np.zeros(len(plane)), np.zeros(len(plane), bool)
         excused[outer] = allowed
-        tree = KDTree(plane)
         if not settings.strict:
-            doubt, pairs = off_neighbours(plane, value), tree.query_pairs(NEAR, output_type="ndarray")
-            torn = torn_points(unit * plane, off, pairs, outer, STEEPEST, doubt, excused)
+            doubt = off_neighbours(plane, value)
+            torn = torn_points(unit * plane, off, neighbours_within(plane, NEAR), outer, STEEPEST, doubt, excused)
             if mostly_noise(self.field):
                 torn |= outer & (_size(off) > excused) & _far_out(_size(off), outer) & _far_out(doubt, outer)
-        apart, index = (np.asarray(found)[:, 1] for found in tree.query(plane, k=2))
+        apart, index = (np.asarray(found)[:, 1] for found in KDTree(plane).query(plane, k=2))
         gentle = _size(off - off[index]) <= CLIFF * unit * apart
         shortest = np.where(gentle, np.minimum(SEPARATE * apart, FINEST), FINEST)
         met = np.where(allowed > limit, allowed, settings.interior_tolerance)
@@ -333,15 +331,10 @@ class Periphery:
                 new[axis][middle] = 1
         return *new, False
 
-    def _notes(self, base: Space, beyond: Floats, limit: float, torn: int = 0, asked: int = 0) -> tuple[Message, ...]:
+    def _notes(self, base: Space, beyond: Floats, limit: float, asked: int = 0) -> tuple[Message, ...]:
         if limit > self.settings.interior_tolerance and not (beyond > limit).any():
-            return (*self._coarse_notes(), *_torn_notes(torn), *self._noise_notes(beyond))
-        return (
-            *self._coarse_notes(),
-            *self._bent_notes(),
-            *_torn_notes(torn),
-            *self._excess_notes(base, beyond, asked),
-        )
+            return (*self._coarse_notes(), *self._noise_notes(beyond))
+        return (*self._coarse_notes(), *self._bent_notes(), *self._excess_notes(base, beyond, asked))
 
     def _coarse_notes(self) -> tuple[Message, ...]:
         """Count the points that are held to their own accuracy only."""
@@ -443,20 +436,6 @@ class Periphery:
 def _far_out(size: Floats, judged: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return (n,) which sizes are many times the median of those that are judged."""
     return size > BLUNDER * float(np.median(size[judged]))
-
-
-def _torn_notes(count: int) -> tuple[Message, ...]:
-    if not count:
-        return ()
-    note = message(
-        "fitting.neighbours-contradict",
-        "points not met, because they contradict those around them: {count}; through one of them and a close "
-        "neighbour the surface would be steeper than 45°, or it lies {times:g} times as far from the field as most do "
-        "(strict meets them where knots allow)",
-        times=BLUNDER,
-        count=count,
-    )
-    return (note.with_severity("warning"),)
 
 
 def finer_breaks(breaks: Floats, x: Floats, longest: Floats) -> Floats:

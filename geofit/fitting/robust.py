@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from geofit.data.messages import Message, message
 from geofit.fitting.calibration import common_factor
 from geofit.fitting.deletion import linear_fit
-from geofit.fitting.model import Model
+from geofit.fitting.model import Model, names_of
 from geofit.fitting.outliers import LIMIT, find_outliers
 from geofit.fitting.posterior import noise_of_unused, posterior
 
@@ -60,13 +60,12 @@ def fit_robustly(model: Model, stage: Callable[[str, float], None]) -> Model:
         model = problem.fit(problem.kept, stage)
     if not rejected.any():
         return model
-    names = [given.points.describe(int(k)) for k in np.flatnonzero(rejected)[:5]]
     text = message(
         "fitting.outliers-not-used",
         "robust: peripheral points that their neighbours contradict are not used in the fit "
         "({count}: {names}); sigma counts them all the same",
         count=int(rejected.sum()),
-        names=tuple([*names, "..."] if rejected.sum() > 5 else names),
+        names=names_of(given.points, np.flatnonzero(rejected)),
     )
     return _noted(model, text.with_severity("warning"))
 

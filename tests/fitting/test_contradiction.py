@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geofit.fitting.contradiction import contradict, near_noise, off_neighbours, torn_points
+from geofit.fitting.contradiction import contradict, near_noise, neighbours_within, off_neighbours, torn_points
 
 N = 120
 UNSTATED = np.full(N, np.nan)
@@ -81,3 +81,12 @@ def test_off_neighbours_leaves_the_nearest_out(columns):
 def test_few_points_and_points_in_line_have_a_doubt(n):
     plane = np.column_stack([10.0 * np.arange(n), np.zeros(n)])
     assert np.isfinite(off_neighbours(plane, np.arange(n, dtype=float))).all()
+
+
+def test_neighbours_within_reach_are_each_pair_once():
+    plane = places(6, 100.0)
+    apart = np.linalg.norm(plane[:, None] - plane, axis=2)
+    expected = np.argwhere(np.triu(apart < 8.0, 1))
+    assert neighbours_within(plane, 8.0).tolist() == expected.tolist()
+    assert neighbours_within(plane, 0.0).shape == (0, 2)
+    assert len(neighbours_within(np.random.default_rng(0).uniform(0, 1, (5_000, 2)), 10.0)) < 8 * 5_000
