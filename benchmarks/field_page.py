@@ -434,9 +434,9 @@ _TRIES = (
     ),
     (
         "noise of a core that is not on sections compared with the deviation of the core's points from their plane",
-        "700 sites: no change; six cores (400 points, noise 1 m, relief 7 m, 200 m around the core) are no longer "
-        "interpolated: ratio of the new error to the old one 0.59 to 0.69 on four, 1.00 and 1.09 on two; Copper Creek, "
-        "bx 155 m to 147 m",
+        "700 sites: no change; six cores (400 points, noise 1 m, relief 7 m, 200 m around the core) are approximated, "
+        "not interpolated: ratio of the new error to the old one 0.59 to 0.69 on four, 1.00 and 1.09 on two; Copper "
+        "Creek, bx 155 m to 147 m",
         "yes",
     ),
     (

@@ -40,13 +40,13 @@ fields of Matérn 3/2 (relief 5, 20 or 60 m, range 150, 400 or 900 m), with reli
 of the contacts. Settings are the defaults: an interior tolerance of 0.1 m.
 
 "Not met" counts the contacts farther than that from the surface, "noise" those of them that the fit explains by noise
-of that size, and "let go" those that contradict a neighbour. Most of the others lie next to an automatic core, whose
-cap of 15 control points a contact does not yield to them; the fit states how many it would take. The error is the
+of that size, "let go" those that contradict a neighbour, and "core" the rest on sites with an automatic core, whose cap
+of 15 control points a contact does not yield to them; the fit states how many it would take. The error is the
 geometric mean, over the sites, of the root mean square error at up to 1,200 other places of the surface, divided by
 that of scipy's exact thin-plate spline of the same contacts.
 
-| | sites | contacts | not met | noise | let go | sites that pass | control points a contact: median | worst | error |
-| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
+| | sites | contacts | not met | noise | let go | core | passed | control points each: median | worst | error |
+| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
 """
 
 
@@ -60,6 +60,7 @@ class Row:
     missed: int
     noise: int
     torn: int
+    cored: int
     passed: bool
     a_point: float
     error: float
@@ -112,8 +113,9 @@ def row_of(seed: int) -> Row:
     truth, found = truth[np.isfinite(found)], found[np.isfinite(found)]
     theirs = rms(thin_plate(contacts, truth[:, :2]) - truth[:, 2])
     a_point = surface.control_points / len(contacts)
+    rest, cored = missed - torn, bool(surface.core.any()) and not noise
     return Row(
-        arrangement, below, len(contacts), missed, (missed - torn) * noise, torn, surface.accuracy.passed, a_point,
+        arrangement, below, len(contacts), missed, rest * noise, torn, rest * cored, surface.accuracy.passed, a_point,
         rms(found - truth[:, 2]) / theirs,
     )  # fmt: skip
 
@@ -127,10 +129,12 @@ def table(rows: list[Row]) -> str:
     for name, some in groups:
         if not some:
             continue
-        n, missed, noise, torn = (sum(getattr(row, key) for row in some) for key in ("n", "missed", "noise", "torn"))
+        keys = ("n", "missed", "noise", "torn", "cored")
+        n, missed, noise, torn, cored = (sum(getattr(row, key) for row in some) for key in keys)
+        passed = sum(row.passed for row in some)
         sizes, errors = ([getattr(row, key) for row in some] for key in ("a_point", "error"))
         lines.append(
-            f"| {name} | {len(some)} | {n:,} | {missed} | {noise} | {torn} | {sum(row.passed for row in some)} | "
+            f"| {name} | {len(some)} | {n:,} | {missed} | {noise} | {torn} | {cored} | {passed} | "
             f"{np.median(sizes):.1f} | {max(sizes):.1f} | {np.exp(np.log(errors).mean()):.2f} |"
         )
     return "\n".join(lines) + "\n"

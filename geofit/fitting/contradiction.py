@@ -36,8 +36,8 @@ def near_noise(plane: Floats, misfit: Floats) -> float:
     misfit : (n,) or (n, k) array
         What a field leaves of them.
     """
-    one, other, _ = _nearest(plane)
-    return float(np.sqrt(np.mean((misfit[one] - misfit[other]) ** 2) / 2))
+    difference, _ = _nearest(plane, misfit)
+    return _noise_of(difference)
 
 
 def contradict(plane: Floats, misfit: Floats, noise: float, accuracy: Floats) -> bool:
@@ -60,10 +60,9 @@ def contradict(plane: Floats, misfit: Floats, noise: float, accuracy: Floats) ->
     stated = np.isfinite(accuracy)
     if 2 * stated.sum() > len(plane) and noise > BEYOND * float(np.median(accuracy[stated])):
         return False
-    one, other, apart = _nearest(plane)
-    rise = np.linalg.norm((misfit[one] - misfit[other]).reshape(len(one), -1), axis=1)
-    steep = float(np.median(rise - CLIFF * apart)) > 0
-    return steep and near_noise(plane, misfit) > SHARED * noise
+    difference, apart = _nearest(plane, misfit)
+    steep = float(np.median(np.linalg.norm(difference, axis=1) - CLIFF * apart)) > 0
+    return steep and _noise_of(difference) > SHARED * noise
 
 
 def torn_points(
@@ -140,8 +139,13 @@ def off_neighbours(plane: Floats, value: Floats) -> Floats:
     return np.asarray(np.linalg.norm(found[:, 0], axis=1))
 
 
-def _nearest(plane: Floats) -> tuple[Ints, Ints, Floats]:
-    """Return the points with the nearest neighbours, these neighbours, and how far apart they are."""
+def _nearest(plane: Floats, misfit: Floats) -> tuple[Floats, Floats]:
+    """Return by how much the points with the nearest neighbours differ from them, (m, k), and how far apart they are."""
     apart, index = (np.asarray(found) for found in KDTree(plane).query(plane, k=2))
     near = np.argsort(apart[:, 1], kind="stable")[: max(len(plane) // NEAREST, FEWEST)]
-    return near, index[near, 1], apart[near, 1]
+    return (misfit[near] - misfit[index[near, 1]]).reshape(len(near), -1), apart[near, 1]
+
+
+def _noise_of(difference: Floats) -> float:
+    """Return the noise of points that differ from each other by so much, (m, k)."""
+    return float(np.sqrt(np.mean(difference**2) / 2))

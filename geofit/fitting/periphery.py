@@ -106,7 +106,7 @@ class _Pulled:
 
 @dataclass(frozen=True, eq=False)
 class Periphery:
-    """The points to approximate, beside the core that lends its control points.
+    """The points to approximate, next to the core that lends its control points.
 
     The regional field's fit stands already, and its core's edge is the patch's edge. ``refit`` solves for it anew
     where a break is allowed at the seams. ``held`` (k,) marks the finer functions that act on the core's points; the
@@ -162,7 +162,8 @@ class Periphery:
             doubt = off_neighbours(plane, value)
             torn = torn_points(unit * plane, off, neighbours_within(plane, NEAR), outer, STEEPEST, doubt, excused)
             if mostly_noise(self.field):
-                torn |= outer & (_size(off) > excused) & _far_out(_size(off), outer) & _far_out(doubt, outer)
+                size = _size(off)
+                torn |= outer & (size > excused) & _far_out(size, outer) & _far_out(doubt, outer)
         apart, index = (np.asarray(found)[:, 1] for found in KDTree(plane).query(plane, k=2))
         gentle = _size(off - off[index]) <= CLIFF * unit * apart
         shortest = np.where(gentle, np.minimum(SEPARATE * apart, FINEST), FINEST)
@@ -219,7 +220,7 @@ class Periphery:
         return np.concatenate([fixed_by_core(outer_of(space), self.core).ravel(), self.held])
 
     def _refitted(self, space: TensorSpace, start: Smoothed) -> Floats:
-        """Solve for the control points beside the core again, in a space that may break at its edge."""
+        """Solve for the control points next to the core again, in a space that may break at its edge."""
         data, over = self.data, plane_coefficients(space) @ start.plane
         plane = data.plane[:][self.outer]
         rest = data.value[:][self.outer] - np.column_stack([np.ones(len(plane)), plane]) @ start.plane
