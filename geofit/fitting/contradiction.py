@@ -140,7 +140,7 @@ def off_neighbours(plane: Floats, value: Floats) -> Floats:
 
 
 def _nearest(plane: Floats, misfit: Floats) -> tuple[Floats, Floats]:
-    """Return by how much the points with the nearest neighbours differ from them, (m, k), and how far apart they are."""
+    """Return how the points with the nearest neighbours differ from them, (m, k), and how far apart they are."""
     apart, index = (np.asarray(found) for found in KDTree(plane).query(plane, k=2))
     near = np.argsort(apart[:, 1], kind="stable")[: max(len(plane) // NEAREST, FEWEST)]
     return (misfit[near] - misfit[index[near, 1]]).reshape(len(near), -1), apart[near, 1]
