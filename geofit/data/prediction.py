@@ -113,12 +113,16 @@ class Suggestion:
 
 @dataclass(frozen=True)
 class Outlier:
-    """A point that its neighbours contradict: left-out error, its standard deviation (m), and their ratio."""
+    """A point that its neighbours contradict: left-out error, its standard deviation (m), and their ratio.
+
+    ``name`` is what a person would look it up by.
+    """
 
     index: int
     error: float
     sd: float
     ratio: float
+    name: Message | str = ""
 
 
 @dataclass(frozen=True)

@@ -159,7 +159,7 @@ def _away(prediction: PredictionResult | None, epsilon: float) -> Lamp:
     level, error = _error(farthest.rms, farthest.scheme, epsilon)
     worst = _least_inside(known)
     if worst is None:
-        return _with_offsets(Lamp(title, level, error), prediction)
+        return _with_outliers(_with_offsets(Lamp(title, level, error), prediction), prediction, epsilon)
     if round(worst.inside, 2) < LEAST_INSIDE and level == "pass":
         level = "warning"
     text = message(
@@ -169,7 +169,7 @@ def _away(prediction: PredictionResult | None, epsilon: float) -> Lamp:
         share=100 * worst.inside,
         scheme=_SCHEMES[worst.scheme],
     )
-    return _with_offsets(Lamp(title, level, text), prediction)
+    return _with_outliers(_with_offsets(Lamp(title, level, text), prediction), prediction, epsilon)
 
 
 def _with_offsets(lamp: Lamp, prediction: PredictionResult | None) -> Lamp:
@@ -178,6 +178,23 @@ def _with_offsets(lamp: Lamp, prediction: PredictionResult | None) -> Lamp:
         return lamp
     text = message("data.verdict-source-off", "{lamp}; {offset}", lamp=lamp.text, offset=prediction.offsets[0].text)
     return Lamp(lamp.title, "warning" if lamp.level == "pass" else lamp.level, text)
+
+
+def _with_outliers(lamp: Lamp, prediction: PredictionResult | None, epsilon: float) -> Lamp:
+    """Return the lamp with the worst outlier; one farther than epsilon from its neighbours turns green to amber."""
+    if prediction is None or not prediction.outliers:
+        return lamp
+    worst = max(prediction.outliers, key=lambda one: abs(one.error))
+    figures = {"lamp": lamp.text, "name": worst.name, "error": abs(worst.error)}
+    text = message("data.verdict-outlier", "{lamp}; outlier: {name}, {error:length} m off its neighbours", **figures)
+    if len(prediction.outliers) > 1:
+        text = message(
+            "data.verdict-outliers",
+            "{lamp}; {count} outliers, the farthest off its neighbours: {name}, {error:length} m",
+            count=len(prediction.outliers),
+            **figures,
+        )
+    return Lamp(lamp.title, "warning" if lamp.level == "pass" and abs(worst.error) > epsilon else lamp.level, text)
 
 
 def _error(rms: float, scheme: Scheme, epsilon: float) -> tuple[Level, Message]:

@@ -299,7 +299,10 @@ def _left_out(
         calibration = calibrated(
             judged, folds, grid.plane, PredictionError(model, given, uncalibrated()).variance(grid.plane)
         )
-        outliers = _outliers(model, fit, calibration.at(given.plane))
+        outliers = tuple(
+            replace(one, name=model.problem.points.describe(one.index))
+            for one in _outliers(model, fit, calibration.at(given.plane))
+        )
     return folds, calibration, outliers
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from geofit.data.accuracy import Accuracy, Check
 from geofit.data.messages import message
-from geofit.data.prediction import LeftOut, LeftOutBody, PredictionResult
+from geofit.data.prediction import LeftOut, LeftOutBody, Outlier, PredictionResult
 from geofit.data.verdict import verdict_of
 
 EPSILON = 0.5
@@ -54,6 +54,22 @@ def test_the_word_follows_from_the_worst_lamp(given, level, lamp):
     found = verdict_of(*given)
     assert found.level == level
     assert [name for name in ("data", "checks", "away") if getattr(found, name).level != "pass"] == [lamp]
+
+
+@pytest.mark.parametrize(
+    ("errors", "level", "words"),
+    [
+        ((-0.4,), "pass", "; outlier: borehole B1, 0.400 m off its neighbours"),
+        ((-98.5,), "warning", "; outlier: borehole B1, 98.500 m off its neighbours"),
+        ((0.3, -0.6), "warning", "; 2 outliers, the farthest off its neighbours: borehole B2, 0.600 m"),
+    ],
+)
+def test_the_worst_outlier_is_named_and_beyond_epsilon_no_surface_passes(errors, level, words):
+    outliers = tuple(Outlier(k, error, 0.1, 10 * abs(error), f"borehole B{k + 1}") for k, error in enumerate(errors))
+    found = verdict_of(accuracy(), replace(prediction(), outliers=outliers))
+    assert found.level == level
+    assert str(found.away.text).endswith(words)
+    assert verdict_of(accuracy(), replace(prediction(rms=10 * EPSILON), outliers=outliers)).away.level == "fail"
 
 
 def test_a_left_out_error_of_ten_epsilons_is_red_and_said():

@@ -219,6 +219,7 @@ def test_planted_blunders_are_listed_and_not_dropped():
     assert set(wrong) <= {outlier.index for outlier in found.outliers}
     assert len(found.outliers) <= 6
     assert found.outliers[0].index == wrong[2]
+    assert found.outliers[0].name == points.describe(wrong[2])
     assert found.outliers[0].ratio == pytest.approx(abs(found.outliers[0].error) / found.outliers[0].sd)
     assert surface.model.problem.kept.all()
 
