@@ -20,7 +20,7 @@ from geofit.data.guard import guarded
 from geofit.data.labels import Labels
 from geofit.data.long_arrays import blocks, left_rows
 from geofit.data.messages import Message, message
-from geofit.data.threads import one_thread
+from geofit.data.threads import alongside, one_thread
 from geofit.geometry.projection import Projection, project
 from geofit.geometry.seams import seams
 from geofit.surfaces.protocol import FittedSurface
@@ -30,6 +30,8 @@ __all__ = ["check", "judged_by", "sigma"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Codes = NDArray[np.int32]
+#: Checks, and why others were not made.
+Examined = tuple[list[Check], list[Message]]
 
 #: Limits that a sound surface keeps (METHOD, sec. 4 to 7).
 CORE_LIMIT, GAP_LIMIT, ANGLE_LIMIT = 1e-6, 1e-6, 0.1
@@ -79,36 +81,29 @@ def check(
         The points' nearest places where they are known already, or are not those of whole patches.
     """
     points, settings = surface.points, surface.settings
-    d, codes, feet_of = _measured(surface) if projection is None else _known(projection)
-    patch = Labels(codes, tuple(one.name for one in surface.patches) or (surface.name,))
-    found = seams(surface.patches)
+    active = np.ones(len(points), bool)
+    active[[conflict.dropped for conflict in conflicts]] = False
+    # The systems of a few points each are small: starting threads for them costs more than the work.
+    with one_thread():
+        d, codes, of_surface = _measured(surface, active, projection)
+        patch = Labels(codes, tuple(one.name for one in surface.patches) or (surface.name,))
+        joined = seams(surface.patches)
+        exact = surface.core & active if len(surface.core) == len(d) else np.zeros(len(d), bool)
+        at_points = _examined(
+            (
+                lambda: _lost_core(surface),
+                lambda: _tolerance_checks(surface, d, exact),
+                lambda: _seam_checks(surface, joined),
+                lambda: _residual_checks(surface, d, patch, active & ~exact),
+            )
+        )
+        between = of_surface()
+    checks, missing = [*at_points[0], *between[0]], [*at_points[1], *between[1]]
     value = sigma(d)
     over = {
         name: Exceedance(limit, _beyond(d, limit))
         for name, limit in (("interior_tolerance", settings.interior_tolerance), ("epsilon", settings.epsilon))
     }
-    active = np.ones(len(d), bool)
-    active[[conflict.dropped for conflict in conflicts]] = False
-    exact = surface.core & active if len(surface.core) == len(d) else np.zeros(len(d), bool)
-    examinations: tuple[Callable[[], Sequence[Check]], ...] = (
-        lambda: _lost_core(surface),
-        lambda: _tolerance_checks(surface, d, exact),
-        lambda: _seam_checks(surface, found),
-        lambda: _residual_checks(surface, d, patch, active & ~exact),
-        *_surface_checks(surface, feet_of, active),
-    )
-    checks: list[Check] = []
-    missing: list[Message] = []
-    # The systems of a few points each are small: starting threads for them costs more than the work.
-    with one_thread():
-        for examine in examinations:
-            checks += guarded(
-                examine,
-                (),
-                lambda reason: missing.append(
-                    message("checks.check-not-made", "a check was not made: {reason}", reason=reason)
-                ),
-            )
     return Accuracy(
         n=len(d),
         sigma=value,
@@ -124,7 +119,7 @@ def check(
         by_section=_groups(d, points.labels["section"]),
         over=over,
         worst=_worst(d),
-        seams=found,
+        seams=joined,
         checks=tuple(checks),
         conflicts=tuple(conflicts),
         notes=(*notes, *missing),
@@ -173,23 +168,47 @@ def _groups(d: Floats, labels: Labels) -> dict[str, Group]:
     }
 
 
-def _measured(surface: FittedSurface) -> tuple[Floats, Codes, Callable[[Ints], Projection]]:
-    """Return distances, patch numbers and nearest places of a surface's points, of many without holding the places."""
-    xyz, patches = surface.points.xyz, surface.patches
-    if len(xyz) <= STEP:
-        return _known(project(patches, xyz - surface.origin))
-    d, codes = np.empty(len(xyz)), np.zeros(len(xyz), np.int32) if len(patches) > 1 else _zeros(len(xyz))
-    for start in range(0, len(xyz), STEP):
+def _measured(
+    surface: FittedSurface, active: NDArray[np.bool_], projection: Projection | None
+) -> tuple[Floats, Codes, Callable[[], Examined]]:
+    """Return distances and patch numbers of a surface's points, and what returns the checks of the surface itself.
+
+    Of many points the nearest places are not held, and those of a few are looked up again: so the surface itself is
+    examined at the same time.
+    """
+    points, patches = surface.points, surface.patches
+
+    def feet_of(rows: Ints | slice) -> Projection:
+        return project(patches, points.xyz[rows] - surface.origin)
+
+    if projection is not None or len(points) <= STEP:
+        found = feet_of(slice(None)) if projection is None else projection
+        of_surface = _surface_checks(surface, found.__getitem__, active)
+        return found.distance, found.patch.astype(np.int32), lambda: _examined(of_surface)
+    examined = alongside(lambda: _examined(_surface_checks(surface, feet_of, active)))
+    d, codes = np.empty(len(points)), np.zeros(len(points), np.int32) if len(patches) > 1 else _zeros(len(points))
+    for start in range(0, len(points), STEP):
         part = slice(start, start + STEP)
-        found = project(patches, xyz[part] - surface.origin)
+        found = feet_of(part)
         d[part] = found.distance
         if len(patches) > 1:
             codes[part] = found.patch
-    return d, codes, lambda rows: project(patches, xyz[rows] - surface.origin)
+    return d, codes, examined
 
 
-def _known(projection: Projection) -> tuple[Floats, Codes, Callable[[Ints], Projection]]:
-    return projection.distance, projection.patch.astype(np.int32), projection.__getitem__
+def _examined(examinations: Sequence[Callable[[], Sequence[Check]]]) -> Examined:
+    """Return the checks that examinations make, and why others were not made."""
+    checks: list[Check] = []
+    missing: list[Message] = []
+    for examine in examinations:
+        checks += guarded(
+            examine,
+            (),
+            lambda reason: missing.append(
+                message("checks.check-not-made", "a check was not made: {reason}", reason=reason)
+            ),
+        )
+    return checks, missing
 
 
 def _zeros(n: int) -> Codes:

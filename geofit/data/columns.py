@@ -109,7 +109,7 @@ def refuse_far(xyz: NDArray[np.float64]) -> None:
     PointsError
         If there is one.
     """
-    farthest = float(np.abs(xyz).max(initial=0.0))
+    farthest = float(max(xyz.max(initial=0.0), -xyz.min(initial=0.0)))
     if farthest > LARGEST:
         raise PointsError(
             message(

@@ -45,7 +45,8 @@ def look_like_degrees(xyz: ArrayLike) -> bool:
     False
     """
     values = np.asarray(xyz, float)
-    if len(values) < 3 or (np.abs(values[:, :2]) > _LIMITS).any():
+    # The first rows mostly settle it: a million are looked at last.
+    if len(values) < 3 or any((np.abs(rows[:, :2]) > _LIMITS).any() for rows in (values[:3], values)):
         return False
     low, high = values.min(axis=0), values.max(axis=0)
     extent = float((high - low)[:2].max())

@@ -1,4 +1,4 @@
-"""One thread for linear algebra: starting more costs longer than the products of small matrices."""
+"""Threads: one for linear algebra, as starting more takes longer than small products; all for compiled loops."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager
 from functools import cache
-from typing import Any
+from typing import Any, TypeVar
 
 from threadpoolctl import ThreadpoolController
 
-__all__ = ["one_thread", "side_by_side"]
+__all__ = ["alongside", "one_thread", "side_by_side"]
+
+T = TypeVar("T")
 
 #: Rows that one thread works on at a time.
 PART = 5_000
@@ -32,6 +34,14 @@ def side_by_side(work: Callable[[slice], None], n: int) -> None:
         return
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(work, parts))
+
+
+def alongside(work: Callable[[], T]) -> Callable[[], T]:
+    """Start work on a thread of its own; return what waits for it and returns its result, or raises its error."""
+    pool = ThreadPoolExecutor(1)
+    waiting = pool.submit(work)
+    pool.shutdown(wait=False)
+    return waiting.result
 
 
 @cache

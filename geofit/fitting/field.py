@@ -47,6 +47,8 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 
+#: Square of the width of very many points, as a share of that of their length, below which they count as collinear.
+COLLINEAR = 1e-14
 #: Standard deviation across a strip, in units of the spacing, below which it counts as a line.
 _NARROW = 0.05
 #: How far the field's space reaches beyond the area, in units, and how fast its spans grow there. Near the free edges
@@ -114,15 +116,20 @@ def plane_trend(plane: Rows, z: Rows, weight: Floats) -> Floats:
     Collinear points leave the slope across them at zero.
     """
     centre = sum(w @ part for part, w in blocks(plane, weight)) / sum(float(w.sum()) for (w,) in blocks(weight))
-    triangles = []
-    for part, values, w in blocks(plane, z, weight):
-        root = np.sqrt(w)
-        matrix = np.stack([root, *(root * (part - centre).T)]).T
-        whole = np.column_stack([matrix, values.reshape(len(values), -1) * root[:, None]])
-        # What the rows of a block say to least squares is in the triangle of their QR decomposition.
-        triangles.append(whole if len(plane) <= BLOCK else np.linalg.qr(whole, mode="r"))
-    rows = np.concatenate(triangles)
-    solution: Floats = np.linalg.lstsq(rows[:, :3], rows[:, 3:], rcond=1e-9)[0]
+    solution: Floats
+    if len(plane) <= BLOCK:
+        root = np.sqrt(weight)
+        matrix = np.stack([root, *(root * (plane[:] - centre).T)]).T
+        columns = z[:].reshape(len(z), -1) * root[:, None]
+        solution = np.linalg.lstsq(matrix, columns, rcond=1e-9)[0]
+    else:
+        products, right = np.zeros((3, 3)), np.zeros((3, math.prod(z.shape[1:])))
+        for part, values, w in blocks(plane, z, weight):
+            rows = [np.ones(len(part)), *(part - centre).T]
+            weighted = np.stack([w * row for row in rows])
+            products += [[one @ other for other in rows] for one in weighted]
+            right += weighted @ values.reshape(len(values), -1)
+        solution = np.asarray(np.linalg.pinv(products, rcond=COLLINEAR, hermitian=True) @ right)
     solution[0] -= centre @ solution[1:]
     return solution.reshape(3, *z.shape[1:])
 

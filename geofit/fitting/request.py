@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.columns import refuse_far
 from geofit.data.errors import PointsError
 from geofit.data.given import POINTS, require_kind
+from geofit.data.long_arrays import blocks
 from geofit.data.messages import message, plural_message
 from geofit.data.points import PointSet, look_like_degrees
 from geofit.geometry.area import fault_of_area
@@ -69,9 +70,13 @@ def require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
         return None
     low, high = corners.min(axis=0), corners.max(axis=0)
     # Column by column: short rows take ten times as long.
-    plan = points.xyz[:, :2].T
-    off = np.max([np.maximum(a - x, x - b) for x, a, b in zip(plan, low, high, strict=True)], axis=0).min()
-    if off > max(np.hypot(*(high - low)), np.hypot(*(np.ptp(x) for x in plan))):
+    plan, off = points.xyz[:, :2].T, np.inf
+    for (part,) in blocks(points.xyz):
+        beyond = [np.maximum(a - x, x - b) for x, a, b in zip(part.T, low, high, strict=False)]
+        off = min(off, np.maximum(*beyond).min())
+        if off <= 0:
+            break
+    if off > 0 and off > max(np.hypot(*(high - low)), np.hypot(*(np.ptp(x) for x in plan))):
         text = message(
             "fitting.points-off-study-area",
             "All points lie outside the study area; the nearest is {off:.6g} m from it. Check the coordinates of "

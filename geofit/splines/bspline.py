@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "basis",
+    "bins",
     "clamped_knots",
     "collocation",
     "common_knots",
@@ -24,6 +25,9 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+#: Even bins for each interval that are to lead to it.
+BINS = 4
 
 
 def clamped_knots(breaks: ArrayLike, degree: int, multiplicity: ArrayLike = 1) -> Floats:
@@ -52,6 +56,17 @@ def spans(knots: Floats, degree: int, x: Floats) -> Ints:
     """Return the index k of the span with knots[k] <= x < knots[k + 1]; the last span holds its right end."""
     count = len(knots) - degree - 1
     return np.clip(np.searchsorted(knots, x, side="right") - 1, degree, count - 1).astype(np.int64)
+
+
+def bins(breaks: Floats) -> Ints:
+    """Return which interval holds the start of each of many even bins between the outermost breaks, or one before.
+
+    The last bin begins at the last break.
+    """
+    count, length = len(breaks) - 1, float(breaks[-1] - breaks[0])
+    # A little before its start, as the number of a place's bin is rounded.
+    starts = np.linspace(breaks[0], breaks[-1], BINS * count + 1) - 1e-9 * length
+    return np.asarray(np.clip(np.searchsorted(breaks, starts, side="right") - 1, 0, count - 1), np.int64)
 
 
 def intervals(breaks: Floats, x: Floats) -> Ints:

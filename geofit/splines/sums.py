@@ -15,6 +15,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from geofit.data.long_arrays import Rows, blocks
+from geofit.data.threads import alongside
 from geofit.splines import bspline
 
 __all__ = ["CellSums", "Moments", "cell_sums"]
@@ -24,6 +25,8 @@ Ints = NDArray[np.int64]
 
 #: Points from which on the sums are compiled: loading them costs as much as a few thousand points.
 COMPILED = 5_000
+#: Points from which on two threads share them.
+APART = 100_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,8 +127,16 @@ def _add_by_point(sums: Floats, lines_u: Floats, lines_v: Floats, *points: Float
     from geofit.splines.sum_loops import add_points
 
     plane, z, weight = (np.require(rows, np.float64, ("C", "W")) for rows in points)
-    cells = bspline.intervals(lines_u, plane[:, 0]), bspline.intervals(lines_v, plane[:, 1])
-    add_points(sums, lines_u, lines_v, *cells, plane, z, weight)
+    mesh = lines_u, lines_v, bspline.bins(lines_u), bspline.bins(lines_v)
+    if len(z) < APART:
+        add_points(sums, *mesh, plane, z, weight)
+        return
+    # Two parts, whatever the machine: sums are rounded in the order of their terms.
+    half, others = len(z) // 2, np.zeros_like(sums)
+    rest = alongside(lambda: add_points(others, *mesh, plane[half:], z[half:], weight[half:]))
+    add_points(sums, *mesh, plane[:half], z[:half], weight[:half])
+    rest()
+    sums += others
 
 
 def _merged(lines: Floats, cells: Floats, sums: Floats) -> Floats:

@@ -6,6 +6,7 @@ from threadpoolctl import threadpool_limits
 from truth import EASTING, NORTHING, hills, rms
 
 from geofit import FitSettings, PointSet, fit_horizon
+from geofit.data.long_arrays import BLOCK
 from geofit.fitting.field import (
     choose_covariance,
     drift_of,
@@ -330,6 +331,20 @@ def test_the_trend_of_collinear_points_is_level_across_them():
     assert np.isfinite(trend).all()
     assert abs(trend[1:] @ np.array([-0.5, 1.0])) < 1e-9
     np.testing.assert_allclose(np.column_stack([np.ones(20), t, 0.5 * t]) @ trend, 4 + 3 * t, atol=1e-9)
+
+
+def test_the_trend_of_very_many_points_is_that_of_least_squares():
+    rng, n = np.random.default_rng(5), BLOCK + 1_000
+    plane, weight = rng.uniform(0, (800, 300), (n, 2)), rng.uniform(0.1, 2, n)
+    z = 1500 + plane @ [0.2, -0.3] + rng.normal(0, 5, n)
+    design = np.column_stack([np.ones(n), plane])
+    expected = np.linalg.lstsq(design * np.sqrt(weight)[:, None], z * np.sqrt(weight), rcond=None)[0]
+    np.testing.assert_allclose(plane_trend(plane, z, weight), expected, rtol=1e-9)
+    both = plane_trend(plane, np.column_stack([z, -2 * z]), weight)
+    np.testing.assert_allclose(both, np.outer(expected, [1, -2]), rtol=1e-9)
+    line = np.outer(plane[:, 0], [1, 0.5])
+    trend = plane_trend(line, 4 + 3 * plane[:, 0], weight)
+    np.testing.assert_allclose(trend, [4, 2.4, 1.2], atol=1e-9)
 
 
 def test_the_trend_follows_the_weights():

@@ -235,7 +235,9 @@ def test_moments_of_one_mesh_serve_all_spaces_on_its_lines(degree, turned, n):
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3])
-def test_compiled_sums_equal_plain_ones_also_of_places_beyond_the_mesh(degree, monkeypatch):
+@pytest.mark.parametrize("apart", [1, 10**9])
+def test_compiled_sums_equal_plain_ones_also_of_places_beyond_the_mesh(degree, apart, monkeypatch):
+    monkeypatch.setattr(sums, "APART", apart)
     n, lines_u = 3 * COMPILED, np.array([0.0, 0.5, 3.0, 3.1, 10.0])
     rng, lines_v = np.random.default_rng(5), np.array([-2.0, 0.0, 5.0])
     plane = np.asfortranarray(rng.uniform((-0.5, -2.5), (10.5, 5.5), (n, 2)))
