@@ -84,7 +84,7 @@ def oscillation(
     feet, normals = projection.foot, _normals(surface, projection)
     places, upward, bent = _places(parts)
     tree = cKDTree(points)
-    near = np.asarray(tree.query(places, k=NEAR)[1])
+    near = np.asarray(tree.query(places, k=NEAR, workers=-1)[1])
     around = _Around.of(places, upward, near, feet, normals)
     surrounded = around.open_angle() < OPEN
     error, reach, known = _left_out(tree, points, feet, normals, places[surrounded], near[surrounded])
@@ -182,7 +182,7 @@ def _left_out(
     to_nearest = np.linalg.norm(places - points[near[:, 0]], axis=1)
     for column in range(AROUND):
         np.maximum.at(gap, near[:, column], to_nearest)
-    distance, others = (np.asarray(found) for found in tree.query(points, k=min(FAR, len(points))))
+    distance, others = (np.asarray(found) for found in tree.query(points, k=min(FAR, len(points)), workers=-1))
     left = (distance >= 0.999 * gap[:, None]) & (others != np.arange(len(points))[:, None])
     order = np.argsort(~left, axis=1, kind="stable")[:, :NEAR]
     around = _Around.of(feet, normals, np.take_along_axis(others, order, axis=1), points, normals)

@@ -163,7 +163,7 @@ def _clustering(xyz: Floats, d: Floats, tolerance: float) -> Check:
             text = message("checks.residuals-equal", "not judged: all residuals are equal")
         return Check(name, None, 0.0, SHARE * tolerance, "m", text)
     z = (d - d.mean()) / spread
-    near = np.asarray(cKDTree(xyz).query(xyz, k=NEIGHBOURS + 1)[1])
+    near = np.asarray(cKDTree(xyz).query(xyz, k=NEIGHBOURS + 1, workers=-1)[1])
     own = near == np.arange(n)[:, None]
     # Where several points are coincident, the point itself need not come first.
     own[~own.any(axis=1), -1] = True

@@ -107,7 +107,9 @@ def torn_points(
 
 def neighbours_within(plane: Floats, reach: float) -> Ints:
     """Return (m, 2) pairs of n points nearer to each other than ``reach``: each with its nearest, of very many."""
-    apart, index = (np.asarray(found) for found in KDTree(plane).query(plane, k=AROUND, distance_upper_bound=reach))
+    apart, index = (
+        np.asarray(found) for found in KDTree(plane).query(plane, k=AROUND, distance_upper_bound=reach, workers=-1)
+    )
     first, column = np.nonzero(np.isfinite(apart))
     both = np.column_stack([first, index[first, column]])
     return np.unique(np.sort(both[both[:, 0] != both[:, 1]], axis=1), axis=0)

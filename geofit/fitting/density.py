@@ -48,7 +48,7 @@ def split_auto(plane: Floats, area: Rectangle, drawn: NDArray[np.bool_] | None =
         return split_none(plane, words)
     if n > CLOUD:
         return _uniform(plane, area, message("fitting.points-are-cloud", "{n} points are a cloud", n=n))
-    spacing = np.asarray(KDTree(plane).query(plane, k=min(NEIGHBOURS + 1, n))[0])[:, -1]
+    spacing = np.asarray(KDTree(plane).query(plane, k=min(NEIGHBOURS + 1, n), workers=-1)[0])[:, -1]
     limit = _otsu(np.log(np.maximum(spacing, 1e-9)))
     if limit is None:
         return _uniform(plane, area, message("fitting.points-spread-evenly", "the points are spread evenly"))

@@ -164,7 +164,7 @@ class Periphery:
             if mostly_noise(self.field):
                 size = _size(off)
                 torn |= outer & (size > excused) & _far_out(size, outer) & _far_out(doubt, outer)
-        apart, index = (np.asarray(found)[:, 1] for found in KDTree(plane).query(plane, k=2))
+        apart, index = (np.asarray(found)[:, 1] for found in KDTree(plane).query(plane, k=2, workers=-1))
         gentle = _size(off - off[index]) <= CLIFF * unit * apart
         shortest = np.where(gentle, np.minimum(SEPARATE * apart, FINEST), FINEST)
         met = np.where(allowed > limit, allowed, settings.interior_tolerance)

@@ -19,7 +19,8 @@ D is a Kronecker product as well, so E is the sum of M_ij M_kl (A_i Du^-1 A_k) (
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from collections.abc import Callable
+from functools import cached_property, wraps
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,7 @@ from geofit.splines.tensor import TensorSpace
 __all__ = ["MaternPrecision", "metric", "metric_slopes"]
 
 Floats = NDArray[np.float64]
+_Made = Callable[["MaternPrecision", float, tuple[float, float]], Floats]
 
 
 def metric(stretch: tuple[float, float]) -> tuple[float, float, float]:
@@ -74,6 +76,19 @@ def _grown(power: Floats, form: tuple[float, float, float]) -> Floats:
     return grown
 
 
+def _kept(make: _Made) -> _Made:
+    """Keep what a method returned for the last parameters: several matrices are made of it."""
+
+    @wraps(make)
+    def method(self: MaternPrecision, kappa: float, stretch: tuple[float, float]) -> Floats:
+        key = kappa, stretch
+        if make.__name__ not in self._last or self._last[make.__name__][0] != key:
+            self._last[make.__name__] = key, make(self, kappa, stretch)
+        return self._last[make.__name__][1]
+
+    return method
+
+
 class MaternPrecision:
     """The matrix E of a space for any kappa and anisotropy.
 
@@ -93,7 +108,7 @@ class MaternPrecision:
         self.power = alpha // self.order
         #: How many steps apart E couples control points, in each direction.
         self.reach = self.power * space.degree
-        self._factored: tuple[tuple[float, tuple[float, float]], Floats] = (math.nan, (0.0, 0.0)), np.empty(0)
+        self._last: dict[str, tuple[tuple[float, tuple[float, float]], Floats]] = {}
 
     @cached_property
     def _terms(self) -> NDArray[np.int64]:
@@ -139,6 +154,7 @@ class MaternPrecision:
                 products.append(once if self.power == 1 else _times(grams, once / mass))
         return found
 
+    @_kept
     def _weights(self, kappa: float, stretch: tuple[float, float]) -> Floats:
         """Return the weight of each term of F."""
         tables = _powers(metric(stretch), self.order)
@@ -155,7 +171,17 @@ class MaternPrecision:
             rows.append([order[m] * turned[m][k, n] for m, k, n in self._terms.T])
         return np.array(rows)
 
-    def _mixing(self, weights: Floats) -> Floats:
+    @_kept
+    def _mixing(self, kappa: float, stretch: tuple[float, float]) -> Floats:
+        """Return M, (q, q)."""
+        return self._mixed_by(self._weights(kappa, stretch))
+
+    @_kept
+    def _mixing_slopes(self, kappa: float, stretch: tuple[float, float]) -> Floats:
+        """Return (3, q, q) the derivatives of M by log kappa and both parts of the stretch."""
+        return self._mixed_by(self._weight_slopes(kappa, stretch))
+
+    def _mixed_by(self, weights: Floats) -> Floats:
         """Return M, (..., q, q), of the weights of the terms, (..., terms)."""
         (m, k, n), count = self._terms, self.order + 1
         mixing = np.zeros((*weights.shape[:-1], *[count] * 4))
@@ -173,21 +199,25 @@ class MaternPrecision:
         count = len(mixing)
         return np.asarray(np.matmul(first, mixed.reshape(count, count, -1)).reshape(mixed.shape))
 
+    @_kept
+    def _form(self, kappa: float, stretch: tuple[float, float]) -> Floats:
+        """Return the band of F."""
+        along, across = self._grams
+        return _summed(along, np.tensordot(self._mixing(kappa, stretch), across, axes=1))
+
+    @_kept
     def _factor(self, kappa: float, stretch: tuple[float, float]) -> Floats:
-        """Return the banded Cholesky factor of F; the last one is kept."""
-        if (kappa, stretch) != self._factored[0]:
-            along, across = self._grams
-            form = _summed(along, np.tensordot(self._mixing(self._weights(kappa, stretch)), across, axes=1))
-            lower = cholesky_banded(form, lower=True, overwrite_ab=True, check_finite=False)
-            self._factored = (kappa, stretch), lower
-        return self._factored[1]
+        """Return the banded Cholesky factor of F."""
+        return np.asarray(cholesky_banded(self._form(kappa, stretch), lower=True, check_finite=False))
 
     def band(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> Floats:
         """Return the band of E for a kappa per unit of length and a stretch (see `metric`), (bandwidth + 1, size).
 
-        It is wider than the space's own where the exponent is beyond the degree.
+        It is wider than the space's own where the exponent is beyond the degree. It may be kept: do not write to it.
         """
-        mixing = self._mixing(self._weights(kappa, stretch))
+        if self.power == 1:
+            return self._form(kappa, stretch)
+        mixing = self._mixing(kappa, stretch)
         along, across = self._factors
         return _summed(along, self._mixed(mixing, mixing, across))
 
@@ -228,7 +258,7 @@ class MaternPrecision:
         met = flat @ couplings.reshape(flat.shape[1], -1)
         if self.power == 2:
             # By the first of the two forms: that by the other one is the same.
-            mixing = self._mixing(self._weights(kappa, stretch))
+            mixing = self._mixing(kappa, stretch)
             across = np.matmul(mixing, across.reshape(*across.shape[:2], -1))
         count = len(along)
         once = met.reshape(count, -1) @ across.reshape(count, -1).T
@@ -236,14 +266,14 @@ class MaternPrecision:
 
     def _by_parameters(self, kappa: float, stretch: tuple[float, float], by_mixing: Floats) -> Floats:
         """Return (3,) the derivatives by log kappa and both parts of the stretch of those by M, (q, q)."""
-        return np.tensordot(self._mixing(self._weight_slopes(kappa, stretch)), by_mixing, axes=2)
+        return np.tensordot(self._mixing_slopes(kappa, stretch), by_mixing, axes=2)
 
     def times_slopes(self, kappa: float, stretch: tuple[float, float], x: Floats) -> Floats:
         """Return (size, 3) the derivatives of E times (size,) coefficients, by log kappa and both stretches."""
-        net, slopes = x.reshape(1, *self.space.shape), self._mixing(self._weight_slopes(kappa, stretch))
+        net, slopes = x.reshape(1, *self.space.shape), self._mixing_slopes(kappa, stretch)
         found = self._applied(slopes, net)
         if self.power == 2:
-            mixing, mass = self._mixing(self._weights(kappa, stretch))[None], np.outer(*self._masses)
+            mixing, mass = self._mixing(kappa, stretch)[None], np.outer(*self._masses)
             found = self._applied(mixing, found / mass) + self._applied(slopes, self._applied(mixing, net) / mass)
         return np.asarray(found.reshape(3, -1).T)
 
@@ -273,8 +303,8 @@ class MaternPrecision:
         """Return E times the coefficients of 1, u and v, (size, 3)."""
         weights = self._weights(kappa, stretch)
         # The other terms take derivatives of an order at which planes vanish.
-        first = self._mixing(np.where(self._terms[0] < 2, weights, 0.0))
-        mixing = first if self.power == 1 else self._mixing(weights)
+        first = self._mixed_by(np.where(self._terms[0] < 2, weights, 0.0))
+        mixing = first if self.power == 1 else self._mixing(kappa, stretch)
         along, across = self._of_planes
         ones, u = (one.reshape(-1, one.shape[-1]) for one in along)
         constant, v = (self._mixed(mixing, first, one).reshape(-1, one.shape[-1]) for one in across)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
+from scipy.linalg.blas import dsbmv
 from scipy.sparse import csr_array
 
 from geofit.data.errors import FitError
@@ -250,15 +251,9 @@ def band_sum(one: Floats, other: Floats) -> Floats:
 
 def band_times(band: Floats, x: Floats) -> Floats:
     """Return the symmetric banded matrix times x, (size,) or (size, k)."""
-    size = band.shape[1]
-    columns = x.reshape(size, -1)
-    result: Floats = band[0][:, None] * columns
-    for k in range(1, len(band)):
-        below = band[k, : size - k, None]
-        if below.any():
-            result[k:] += below * columns[: size - k]
-            result[: size - k] += below * columns[k:]
-    return result.reshape(x.shape)
+    width = min(len(band), band.shape[1])
+    products = [dsbmv(width - 1, 1.0, band[:width], column, lower=1) for column in x.reshape(band.shape[1], -1).T]
+    return np.stack(products, axis=1).reshape(x.shape)
 
 
 def _sums(index: Ints, values: Floats, size: int) -> Floats:
