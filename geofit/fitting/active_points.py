@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from geofit.data.long_arrays import LongArray, Rows, blocks, everywhere, inverse_squares, without
 from geofit.data.settings import FitSettings
 from geofit.fitting.density import CLOUD
-from geofit.fitting.field import plane_trend, relative_noise
+from geofit.fitting.field import FieldChoice, Smoothed, plane_trend, relative_noise, smooth
 from geofit.fitting.likelihood import plane_coefficients
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
 from geofit.fitting.weighted_points import WeightedPoints
 from geofit.splines.refined import Space, outer_of, padded
+from geofit.splines.tensor import TensorSpace
 
 __all__ = ["Data", "degree_for", "gather_points"]
 
@@ -41,11 +42,18 @@ class Data:
     unit: float
     trend: Floats
     slopes: Slopes | None = None
+    _last: dict[TensorSpace, tuple[FieldChoice, Smoothed]] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def weighted(self) -> WeightedPoints:
         """The points by the weights of their noise."""
         return WeightedPoints(self.plane, self.value, inverse_squares(self.noise))
+
+    def smoothed(self, space: TensorSpace, choice: FieldChoice) -> Smoothed:
+        """Return a chosen field on a space; the last one of each space is kept."""
+        if space not in self._last or self._last[space][0] != choice:
+            self._last[space] = choice, smooth(space, choice, self.weighted, self.trend, self.slopes)
+        return self._last[space][1]
 
     def whole(self) -> Data:
         """Return the same points, all places held."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
@@ -71,7 +73,7 @@ def torn_points(
     pairs: Ints,
     loose: NDArray[np.bool_],
     steepest: float,
-    doubt: Floats,
+    doubt: Callable[[], Floats],
     excused: Floats | float = 0.0,
 ) -> NDArray[np.bool_]:
     """Return (n,) the points to let go: of two neighbours that ask for a cliff, the more doubtful one.
@@ -88,8 +90,8 @@ def torn_points(
         Points that may be let go.
     steepest : float
         Slope that two neighbours may ask for.
-    doubt : (n,) array
-        How far each point lies from where the others see it.
+    doubt : callable
+        Returns (n,) how far each point lies from where the others see it; called where two ask for a cliff.
     excused : (n,) array or float
         How far the surface may miss each point, metres.
     """
@@ -98,10 +100,11 @@ def torn_points(
     rise = np.linalg.norm(off[first] - off[second], axis=1) - missed[first] - missed[second]
     slope = rise / np.maximum(np.linalg.norm(plane[first] - plane[second], axis=1), 1e-9)
     torn = np.zeros(len(plane), bool)
-    for pair in np.argsort(-slope, kind="stable")[: int((slope > steepest).sum())]:
-        both = pairs[pair]
+    steep = np.argsort(-slope, kind="stable")[: int((slope > steepest).sum())]
+    size = doubt() if len(steep) else torn
+    for both in pairs[steep]:
         if loose[both].any() and not torn[both].any():
-            torn[both[np.argmax(np.where(loose[both], doubt[both], -1.0))]] = True
+            torn[both[np.argmax(np.where(loose[both], size[both], -1.0))]] = True
     return torn
 
 
@@ -128,7 +131,7 @@ def off_neighbours(plane: Floats, value: Floats) -> Floats:
         Heights or coordinates, metres.
     """
     count = min(AROUND + 2, len(plane))
-    apart, index = (np.asarray(found)[:, 2:] for found in KDTree(plane).query(plane, k=count))
+    apart, index = (np.asarray(found)[:, 2:] for found in KDTree(plane).query(plane, k=count, workers=-1))
     unit = apart.max(axis=1, initial=1e-300)
     to = (plane[index] - plane[:, None]) / unit[:, None, None]
     weight = unit[:, None] / np.maximum(apart, 1e-3 * unit[:, None])

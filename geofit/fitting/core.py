@@ -39,7 +39,7 @@ from geofit.fitting.core_patch import (
 from geofit.fitting.core_relief import relief_of_core
 from geofit.fitting.field import FieldChoice, Smoothed, plane_trend
 from geofit.fitting.knots import graded_breaks, neighbour_pairs, some_breaks
-from geofit.fitting.net import Net, smoothed
+from geofit.fitting.net import Net
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.periphery import Periphery
 from geofit.fitting.resolution import CLOSE, Choice, choose_field, longest_span
@@ -218,7 +218,7 @@ def _through_points(core: Core, limits: Limits, linear: bool) -> Through:
         span = min(FIELD_SPAN, limits.longest)
         some = [some_breaks(along, span) for along in breaks]
         base = core.coarse if on_coarse(core, degree) else TensorSpace.on_breaks(some[0], some[1], degree)
-        regional = smoothed(data, base, core.field)
+        regional = data.smoothed(base, core.field)
         misfit = data.value[chosen] - core.field_at(base, regional.coefficients, plane)
         refined = refine_knots(
             *breaks, plane, pairs, misfit, lambda u, v: TensorSpace.on_breaks(u, v, degree), counted, rounds, data.unit
@@ -328,7 +328,7 @@ def _torn(core: Core) -> NDArray[np.bool_]:
     if loose.any():
         plane, misfit = data.plane[chosen], core.misfit(chosen)
         size = np.linalg.norm(misfit.reshape(len(chosen), -1), axis=1)
-        torn[chosen] = torn_points(data.unit * plane, misfit, neighbour_pairs(plane), loose, CLIFF, size)
+        torn[chosen] = torn_points(data.unit * plane, misfit, neighbour_pairs(plane), loose, CLIFF, lambda: size)
     return torn
 
 

@@ -25,7 +25,6 @@ from geofit.fitting.caps import in_patches
 from geofit.fitting.core_relief import CoreRelief
 from geofit.fitting.field import FieldChoice
 from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes
-from geofit.fitting.net import smoothed
 from geofit.fitting.resolution import longest_span
 from geofit.fitting.skin import OVERSHOOT, Lines, minimum_norm_correction, refine_knots
 from geofit.splines.refined import RefinedSpace, Space
@@ -100,7 +99,7 @@ class Core:
 
     def misfit(self, chosen: Ints) -> Floats:
         """Return what the field leaves of some points, (m,) or (m, k) metres."""
-        found = smoothed(self.data, self.coarse, self.field).coefficients
+        found = self.data.smoothed(self.coarse, self.field).coefficients
         return np.asarray(self.data.value[chosen] - self.field_at(self.coarse, found, self.data.plane[chosen]))
 
     @property
@@ -159,7 +158,7 @@ def through_points_locally(core: Core, limits: Limits) -> Through:
     for laid in LAID:
         given = _laid(core, plane, pairs, limits, laid)
         base = core.coarse if on_coarse(core, degree) else given.outer
-        regional = smoothed(data, base, core.field)
+        regional = data.smoothed(base, core.field)
         misfit = data.value[chosen] - core.field_at(base, regional.coefficients, plane)
 
         def finer(breaks_u: Floats, breaks_v: Floats, outer: TensorSpace = given.outer) -> RefinedSpace:

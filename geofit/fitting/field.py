@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,7 +75,7 @@ class FieldChoice:
     noise: float
     spread: float = math.inf
     hold: float = 0.0
-    contradictory: bool = False
+    contradictory: bool = field(default=False, compare=False)
 
     @property
     def energy(self) -> str:

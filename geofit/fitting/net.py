@@ -17,13 +17,13 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.active_points import Data
 from geofit.fitting.caps import cap_for
 from geofit.fitting.core_relief import CoreRelief
-from geofit.fitting.field import FieldChoice, Smoothed, smooth
+from geofit.fitting.field import FieldChoice
 from geofit.fitting.periphery import Periphery
 from geofit.fitting.resolution import Choice, choose_field
 from geofit.splines.refined import Space
 from geofit.splines.tensor import TensorSpace
 
-__all__ = ["Net", "approximate_all", "smoothed"]
+__all__ = ["Net", "approximate_all"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -56,11 +56,6 @@ class Net:
     relief: CoreRelief | None = None
 
 
-def smoothed(data: Data, space: TensorSpace, field: FieldChoice) -> Smoothed:
-    """Return a chosen field on a space."""
-    return smooth(space, field, data.weighted, data.trend, data.slopes)
-
-
 def approximate_all(
     data: Data,
     settings: FitSettings,
@@ -76,7 +71,7 @@ def approximate_all(
     most = cap_for(settings, n)
     stage("field", 0.25)
     field, base = choose_field(data, settings, most, sketched) if chosen is None else chosen
-    start = smoothed(data, base, field)
+    start = data.smoothed(base, field)
     stage("periphery", 0.5)
     periphery = Periphery(data, np.ones(n, bool), None, field, settings, most, False, np.zeros(0, bool))
     found = periphery.fit(base, start)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -159,11 +159,11 @@ class Periphery:
         excused, torn = np.zeros(len(plane)), np.zeros(len(plane), bool)
         excused[outer] = allowed
         if not settings.strict:
-            doubt = off_neighbours(plane, value)
+            doubt = cache(lambda: off_neighbours(plane, value))
             torn = torn_points(unit * plane, off, neighbours_within(plane, NEAR), outer, STEEPEST, doubt, excused)
             if mostly_noise(self.field):
                 size = _size(off)
-                torn |= outer & (size > excused) & _far_out(size, outer) & _far_out(doubt, outer)
+                torn |= outer & (size > excused) & _far_out(size, outer) & _far_out(doubt(), outer)
         apart, index = (np.asarray(found)[:, 1] for found in KDTree(plane).query(plane, k=2, workers=-1))
         gentle = _size(off - off[index]) <= CLIFF * unit * apart
         shortest = np.where(gentle, np.minimum(SEPARATE * apart, FINEST), FINEST)

@@ -115,8 +115,8 @@ def _summary(report: AccuracyReport, notes: Sequence[Message], stale: Sequence[s
                 "positive above it. FAIL: σ is not below the control error ε. WARNING: it is, but a check fails, or "
                 "the surface is worse away from its data: the left-out error, the root mean square of what it misses "
                 "where holes, sections or blocks are left out (the worst of them), is above ε or cannot be estimated, "
-                "the 90 % band contains too few of these points, or a source is systematically offset. PASS: none of "
-                "these."
+                "the 90 % band contains too few of these points, a point is farther than ε off its neighbours, or a "
+                "source is systematically offset. PASS: none of these."
             ),
             "quiet",
         )

@@ -30,7 +30,6 @@ from geofit.fitting.active_points import Data
 from geofit.fitting.assemble import patches_of
 from geofit.fitting.caps import cap_for
 from geofit.fitting.field import FieldChoice, plane_trend
-from geofit.fitting.net import smoothed
 from geofit.fitting.parametrize import STEEP, direction_of, plan_box
 from geofit.fitting.request import study_area_of
 from geofit.fitting.resolution import choose_field
@@ -142,7 +141,7 @@ def _fit_cloud(
     data = _gather(clock.listened(kept, "field", 0.35, 0.95), frame, boundary)
     most = cap_for(settings, len(kept))
     field, space = choose_field(data, settings, most)
-    start = smoothed(data, space, field)
+    start = data.smoothed(space, field)
     coefficients = start.coefficients + data.over_trend(space)
     patches = patches_of(space, coefficients, None, frame, data.unit)
     outline = boundary if frame.kind == "map" else None
