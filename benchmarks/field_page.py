@@ -487,8 +487,8 @@ _TRIES = (
         "yes",
     ),
     (
-        "shorter spans are not tried where the points are dense on every span, and longer ones lose less than the shorter "
-        "ones must gain",
+        "shorter spans are not tried where the points are dense on every span, and longer ones lose less than the "
+        "shorter ones must gain",
         "100 sites, scattered points and clouds: the same fits; 10,000 points take 0.78 of the time, together with a "
         "field that is solved once, not twice, on its space",
         "yes",
