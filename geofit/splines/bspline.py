@@ -26,9 +26,6 @@ __all__ = [
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-#: Even bins for each interval that are to lead to it.
-BINS = 4
-
 
 def clamped_knots(breaks: ArrayLike, degree: int, multiplicity: ArrayLike = 1) -> Floats:
     """Return the clamped knot vector of strictly ascending ``breaks``.
@@ -58,15 +55,14 @@ def spans(knots: Floats, degree: int, x: Floats) -> Ints:
     return np.clip(np.searchsorted(knots, x, side="right") - 1, degree, count - 1).astype(np.int64)
 
 
-def bins(breaks: Floats) -> Ints:
-    """Return which interval holds the start of each of many even bins between the outermost breaks, or one before.
+def bins(breaks: Floats, count: int) -> Ints:
+    """Return which interval holds the start of each of so many even bins, or a rounding error before it.
 
-    The last bin begins at the last break.
+    The bins fill the room between the outermost breaks; one more begins at the last of them.
     """
-    count, length = len(breaks) - 1, float(breaks[-1] - breaks[0])
-    # A little before its start, as the number of a place's bin is rounded.
-    starts = np.linspace(breaks[0], breaks[-1], BINS * count + 1) - 1e-9 * length
-    return np.asarray(np.clip(np.searchsorted(breaks, starts, side="right") - 1, 0, count - 1), np.int64)
+    length = float(breaks[-1] - breaks[0])
+    starts = np.linspace(breaks[0], breaks[-1], count + 1) - 1e-6 * length / count
+    return np.asarray(np.clip(np.searchsorted(breaks, starts, side="right") - 1, 0, len(breaks) - 2), np.int64)
 
 
 def intervals(breaks: Floats, x: Floats) -> Ints:
@@ -75,13 +71,11 @@ def intervals(breaks: Floats, x: Floats) -> Ints:
     For many places a table of even bins names which interval begins there, or a rounding error before; each bin is
     shorter than half an interval, so a look at the next break settles the rest in half a search's time.
     """
-    count, length = len(breaks) - 1, float(breaks[-1] - breaks[0])
-    bins = int(np.ceil(2 * length / np.diff(breaks).min()))
-    if len(x) < 16 * bins:
-        return np.asarray(np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, count - 1), np.int64)
-    starts = np.linspace(breaks[0], breaks[-1], bins + 1) - 1e-6 * length / bins
-    before = np.clip(np.searchsorted(breaks, starts, side="right") - 1, 0, count - 1)
-    found = before.take(((x - breaks[0]) * (bins / length)).clip(0, bins).astype(np.intp))
+    last, length = len(breaks) - 2, float(breaks[-1] - breaks[0])
+    count = int(np.ceil(2 * length / np.diff(breaks).min()))
+    if len(x) < 16 * count:
+        return np.asarray(np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, last), np.int64)
+    found = bins(breaks, count).take(((x - breaks[0]) * (count / length)).clip(0, count).astype(np.intp))
     found = found + (x >= np.append(breaks[1:-1], np.inf).take(found))
     return np.asarray(found, np.int64)
 

@@ -27,6 +27,8 @@ Ints = NDArray[np.int64]
 COMPILED = 5_000
 #: Points from which on two threads share them.
 APART = 100_000
+#: Even bins for each line of the mesh, which lead to the cells.
+BINS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,11 +129,12 @@ def _add_by_point(sums: Floats, lines_u: Floats, lines_v: Floats, *points: Float
     from geofit.splines.sum_loops import add_points
 
     plane, z, weight = (np.require(rows, np.float64, ("C", "W")) for rows in points)
-    mesh = lines_u, lines_v, bspline.bins(lines_u), bspline.bins(lines_v)
+    bins_u, bins_v = (bspline.bins(lines, BINS * len(lines)) for lines in (lines_u, lines_v))
+    mesh = lines_u, lines_v, bins_u, bins_v
     if len(z) < APART:
         add_points(sums, *mesh, plane, z, weight)
         return
-    # Two parts, whatever the machine: sums are rounded in the order of their terms.
+    # Two parts, however many processors there are: sums are rounded in the order of their terms.
     half, others = len(z) // 2, np.zeros_like(sums)
     rest = alongside(lambda: add_points(others, *mesh, plane[half:], z[half:], weight[half:]))
     add_points(sums, *mesh, plane[:half], z[:half], weight[:half])

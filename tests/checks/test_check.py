@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from surfaces import ORIGIN, height_field, horizon, nine, split
 
+from geofit.checks import check as module
 from geofit.checks.check import check, sigma
 from geofit.data.accuracy import Conflict, Exceedance
 from geofit.data.points import PointSet
@@ -207,3 +208,28 @@ def test_a_cut_surface_measures_as_the_whole():
     points = np.random.default_rng(1).uniform((0, 0, -60), (1000, 700, 60), (200, 3)) + ORIGIN
     cut, one = check(horizon(patches, points)), check(horizon([whole], points))
     np.testing.assert_allclose(cut.residuals, one.residuals, atol=1e-9)
+
+
+def test_the_check_of_very_many_points_is_that_of_all_at_once(monkeypatch):
+    rng = np.random.default_rng(3)
+    patches = split(height_field(12, 12, z=lambda x, y: 3 * np.sin(x / 30) + 0.01 * y), [50.0], [])
+    plan = rng.uniform(1, 99, (600, 2))
+    surface = horizon(patches, np.column_stack([plan, 3 * np.sin(plan[:, 0] / 30) + rng.normal(0, 0.3, 600)]) + ORIGIN)
+    at_once = check(surface, [Conflict(3, 7, 0.1, "")])
+    monkeypatch.setattr(module, "STEP", 250)
+    in_parts = check(surface, [Conflict(3, 7, 0.1, "")])
+    np.testing.assert_array_equal(in_parts.residuals, at_once.residuals)
+    np.testing.assert_array_equal(in_parts.patch, at_once.patch)
+    assert in_parts.checks == at_once.checks
+    assert {"oscillation", "normals", "interior tolerance"} <= {one.name for one in in_parts.checks}
+
+
+def test_what_fails_while_very_many_points_are_measured_is_noted(monkeypatch):
+    def broken(*_):
+        raise ZeroDivisionError("planted")
+
+    monkeypatch.setattr(module, "oscillation", broken)
+    monkeypatch.setattr(module, "STEP", 5)
+    found = check(horizon([flat()], above(*np.linspace(0, 0.1, 12))))
+    assert "checks.check-not-made" in [note.code for note in found.notes]
+    assert "normals" in named(found)

@@ -60,6 +60,19 @@ def test_of_two_that_ask_for_a_cliff_the_more_doubtful_one_is_let_go():
     assert torn_points(LINE, three, PAIRS, loose, 1.0, lambda: misfit).tolist() == [False, False, True, False]
 
 
+def test_who_is_doubtful_is_asked_only_where_two_ask_for_a_cliff():
+    misfit, asked = np.array([0.0, 2.0, 30.0, 1.0]), []
+
+    def doubt():
+        asked.append(True)
+        return misfit
+
+    torn_points(LINE, misfit, PAIRS, np.ones(4, bool), 3.0, doubt)
+    assert not asked
+    torn_points(LINE, misfit, PAIRS, np.ones(4, bool), 1.0, doubt)
+    assert asked
+
+
 def test_only_loose_points_are_let_go():
     misfit = np.array([0.0, 2.0, 30.0, 1.0])
     loose = np.array([True, True, False, True])

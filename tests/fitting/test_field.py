@@ -7,6 +7,8 @@ from truth import EASTING, NORTHING, hills, rms
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.long_arrays import BLOCK
+from geofit.fitting import resolution
+from geofit.fitting.active_points import Data
 from geofit.fitting.field import (
     choose_covariance,
     drift_of,
@@ -17,7 +19,7 @@ from geofit.fitting.field import (
     smooth,
     widened_space,
 )
-from geofit.fitting.resolution import EVEN, even_space, longest_span
+from geofit.fitting.resolution import EVEN, choose_field, even_space, longest_span
 from geofit.fitting.weighted_points import WeightedPoints
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
@@ -385,3 +387,28 @@ def test_each_smoothness_finds_its_own_noise_whatever_the_others_find(seed):
     for guess in known:
         ((alone, value),) = choose_covariance(fine, given, known=[guess], trend=trend)
         assert together[alone.alpha] == pytest.approx(value, abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_shorter_spans_that_cannot_win_are_not_tried_and_the_field_is_the_same(seed, monkeypatch):
+    tried = []
+
+    def counted(space, *given, **words):
+        tried.append(space.size)
+        return choose_covariance(space, *given, **words)
+
+    monkeypatch.setattr(resolution, "choose_covariance", counted)
+    plane, z, trend = cloud(10_000, seed, 0.05, hills(seed))
+    side = float(np.sqrt(len(plane)))
+    data = Data(plane, z, np.full(len(z), np.nan), np.ones(len(z)), (0.0, side, 0.0, side), 20.0, trend)
+    found = []
+    # Of spans that are no longer than the spacing nothing is concluded.
+    for span in (longest_span, lambda space: 0.0):
+        monkeypatch.setattr(resolution, "longest_span", span)
+        tried.clear()
+        field, space = choose_field(data, FitSettings(), 20_000)
+        found.append((field, space.size, len(tried)))
+    (field, size, count), (expected, wanted, more) = found
+    assert (field, size) == (expected, wanted)
+    assert count <= more
+    assert seed != 0 or count < more
