@@ -61,7 +61,7 @@ def off_of(result: HorizonResult, settings: FitSettings) -> Off | None:
 def fitted(result: HorizonResult) -> Fitted:
     """Take the figures of the table from a result."""
     a, core = result.accuracy, int(result.core.sum())
-    reasons = [] if a.passed else [f"sigma {a.sigma:.3f} m is not below epsilon {a.epsilon:g} m"]
+    reasons = [] if a.sigma < a.epsilon else [f"sigma {a.sigma:.3f} m is not below epsilon {a.epsilon:g} m"]
     checks = (*a.checks, *(result.read_back.checks if result.read_back else ()))
     reasons += [_failing(check) for check in checks if check.passed is False]
     notes = map(str, a.notes)

@@ -47,11 +47,7 @@ def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
         if left is not None:
             surface = _with_note(surface, left.with_severity("warning"))
             break
-        movable = given.kept & ~surface.core
-        movable[given.kept] &= ~model.net.torn
-        if not given.settings.strict:
-            movable &= ~(given.accuracy > given.settings.interior_tolerance)
-        better = pull_to_worst(model.net, given.parametrization, movable, accuracy.residuals)
+        better = pull_to_worst(model.net, given.parametrization, _movable(model, surface), accuracy.residuals)
         tried = None if better is None or step == given.settings.max_iterations else model.with_net(better)
         candidate = None if tried is None else fit_of(tried)
         if candidate is None or candidate.accuracy is None or candidate.accuracy.sigma > 0.99 * accuracy.sigma:
@@ -64,7 +60,27 @@ def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
             break
         assert tried is not None
         model, surface = tried, candidate
-    return surface
+    return _without_unmet(model, surface)
+
+
+def _movable(model: Model, surface: HorizonFit) -> NDArray[np.bool_]:
+    """Return (n,) which points the surface may be moved to."""
+    given = model.problem
+    movable = given.kept & ~surface.core
+    movable[given.kept] &= ~model.net.torn
+    if not given.settings.strict:
+        movable &= ~(given.accuracy > given.settings.interior_tolerance)
+    return movable
+
+
+def _without_unmet(model: Model, surface: HorizonFit) -> HorizonFit:
+    """Take back the note that points stay beyond the tolerance, where all that may be met are within it by now."""
+    accuracy = surface.accuracy
+    assert accuracy is not None
+    others = tuple(note for note in accuracy.notes if note.code != "fitting.tolerance-not-met")
+    if others == accuracy.notes or (np.abs(accuracy.residuals[_movable(model, surface)]) > model.net.limit).any():
+        return surface
+    return surface.with_(accuracy=replace(accuracy, notes=others))
 
 
 def _left_as_they_are(model: Model) -> Message | None:

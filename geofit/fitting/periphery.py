@@ -387,8 +387,8 @@ class Periphery:
         return (note.with_severity("warning"),)
 
     def _excess_notes(self, base: Space, excess: Floats, asked: int) -> tuple[Message, ...]:
-        count = int((excess > 0).sum())
-        if not count:
+        """Say why points are not met; how many and how far is for the check, which sees them after all adjustments."""
+        if not (excess > 0).any():
             return ()
         reason = message(
             "fitting.points-too-close-for-knots",
@@ -425,10 +425,8 @@ class Periphery:
             reason = message("fitting.smoothing-given", "the smoothing is given")
         note = message(
             "fitting.tolerance-not-met",
-            "interior tolerance {tolerance:g} m not met in height, points: {count}, worst {worst:.3f} m: {reason}",
+            "points stay beyond the interior tolerance of {tolerance:g} m: {reason}",
             tolerance=self.settings.interior_tolerance,
-            count=count,
-            worst=float(excess.max()),
             reason=reason,
         )
         return (note.with_severity("warning"),)

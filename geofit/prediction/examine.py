@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -171,18 +172,18 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None, where
         return PredictionResult(tuple(results), None, (), outliers, tuple(notes))
     tell(progress, "next holes", 0.8)
     suggestions, uncertainty = _between(grid, PredictionError(model, given, calibration), notes)
-    offsets = _offsets(model, given, calibration, notes)
+    offsets = _offsets(model, given, calibration, outliers, notes)
     tell(progress, "done", 1.0)
     return PredictionResult(tuple(results), uncertainty, suggestions, outliers, tuple(notes), offsets)
 
 
 def _offsets(
-    model: Model, given: Posterior, calibration: Calibration, notes: list[Message]
+    model: Model, given: Posterior, calibration: Calibration, outliers: Sequence[Outlier], notes: list[Message]
 ) -> tuple[SourceOffset, ...]:
     """Return the systematic offsets between kinds of points, and add a note on each."""
     none: tuple[SourceOffset, ...] = ()
     found = guarded(
-        lambda: source_offsets(model, given, calibration),
+        lambda: source_offsets(model, given, calibration, outliers),
         none,
         lambda reason: notes.append(
             message("prediction.sources-not-compared", "the sources were not compared: {reason}", reason=reason)

@@ -105,3 +105,11 @@ def test_a_blunder_among_holes_that_scatter_is_let_go():
     assert np.flatnonzero(off > 0.1).tolist() == [27]
     assert with_code(surface.accuracy.notes, "fitting.neighbours-contradict").params["count"] == 1
     assert not surface.accuracy.passed
+
+
+@pytest.mark.parametrize(("most", "epsilon", "met"), [(400, 0.3, True), (500, 0.3, True), (200, 2.0, False)])
+def test_points_that_local_adjustment_has_met_are_not_said_to_stay_away(most, epsilon, met):
+    settings = FitSettings(max_control_points=most, interior_tolerance=1.0, epsilon=epsilon)
+    accuracy = fit_horizon(PointSet(rough(60, 60, relief=60.0, below=2.0)), settings).accuracy
+    assert (np.abs(accuracy.residuals) <= 1.0).all() == met
+    assert ("fitting.tolerance-not-met" not in {note.code for note in accuracy.notes}) == met

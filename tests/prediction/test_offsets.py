@@ -14,12 +14,13 @@ from geofit.prediction.examine import examine
 HOLES, PICKS = 40, 200
 
 
-def examined(offset, kind="geophysics"):
-    """A horizon seen by 40 boreholes (0.05 m) and by 200 picks (1.5 m) that lie ``offset`` above it."""
+def examined(offset, kind="geophysics", wrong=0.0, row=7):
+    """A horizon seen by 40 boreholes (0.05 m) and by 200 picks (1.5 m) that lie ``offset`` above it, one ``wrong``."""
     rng, height = np.random.default_rng(2), hills(1)
     plan = rng.uniform(0, 2000, (HOLES + PICKS, 2)) + np.array((EASTING, NORTHING))
     z = height(*plan.T) + rng.normal(0, 1, len(plan)) * np.repeat([0.05, 1.5], [HOLES, PICKS])
     z[HOLES:] += offset
+    z[row] += wrong
     kinds = ["borehole"] * HOLES + [kind] * PICKS
     surface = fit_horizon(PointSet(np.column_stack([plan, z]), kind=kinds))
     return surface, examine(surface)
@@ -64,3 +65,39 @@ def test_the_offset_of_a_steep_surface_is_across_it():
 def test_points_of_one_kind_have_nothing_to_be_compared_with():
     _, found = examined(6.0, kind="borehole")
     assert found.offsets == ()
+
+
+@pytest.mark.parametrize("wrong", [-60.0, 60.0])
+@pytest.mark.parametrize("name", ["T3-T2", "T2-T1"])
+def test_one_wrong_collar_does_not_make_the_sections_look_offset(sample_site, name, wrong):
+    points = sample_site.horizons[name]
+    (row,) = np.flatnonzero(points.hole == "ZK502")
+    xyz = points.xyz.copy()
+    xyz[row, 2] += wrong
+    found = examine(fit_horizon(points.with_(xyz=xyz), boundary=sample_site.boundary))
+    assert [one.index for one in found.outliers] == [row]
+    assert found.offsets == ()
+
+
+@pytest.mark.parametrize("row", [7, HOLES + 7])
+def test_one_wrong_elevation_does_not_make_a_kind_look_offset(row):
+    _, found = examined(0.0, wrong=200.0, row=row)
+    assert row in [one.index for one in found.outliers]
+    assert found.offsets == ()
+
+
+def test_an_offset_is_found_beside_a_wrong_elevation():
+    _, found = examined(6.0, wrong=-60.0)
+    (one,) = found.offsets
+    assert one.offset == pytest.approx(6.0, abs=3 * one.sd)
+
+
+def test_a_kind_whose_points_all_count_as_outliers_is_offset():
+    rng, height = np.random.default_rng(4), hills(1)
+    plan = rng.uniform(0, 2000, (210, 2)) + np.array((EASTING, NORTHING))
+    z = height(*plan.T) + rng.normal(0, 0.1, len(plan))
+    z[:10] += 25.0
+    found = examine(fit_horizon(PointSet(np.column_stack([plan, z]), kind=["geophysics"] * 10 + ["borehole"] * 200)))
+    assert len(found.outliers) > 1
+    (one,) = found.offsets
+    assert one.offset == pytest.approx(25.0, abs=4 * one.sd)
