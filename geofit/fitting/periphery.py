@@ -356,14 +356,13 @@ class Periphery:
         return (note,)
 
     def _noise_notes(self, beyond: Floats) -> tuple[Message, ...]:
-        """Count the points that lie beyond the tolerance because their own noise puts them there."""
-        count = int((beyond > 0).sum())
-        if not count:
+        """Say why points beyond the tolerance stay there: their own noise puts so many beyond it."""
+        if not (beyond > 0).any():
             return ()
         note = message(
             "fitting.points-beyond-tolerance-as-noise",
-            "{count} points beyond {tolerance:g} m, as noise of {noise:.3g} m predicts; they are listed, not fitted",
-            count=count,
+            "noise of {noise:.3g} m puts points beyond the interior tolerance of {tolerance:g} m; they are listed, not "
+            "fitted",
             tolerance=self.settings.interior_tolerance,
             noise=self._noise,
         )

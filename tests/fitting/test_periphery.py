@@ -113,3 +113,15 @@ def test_points_that_local_adjustment_has_met_are_not_said_to_stay_away(most, ep
     accuracy = fit_horizon(PointSet(rough(60, 60, relief=60.0, below=2.0)), settings).accuracy
     assert (np.abs(accuracy.residuals) <= 1.0).all() == met
     assert ("fitting.tolerance-not-met" not in {note.code for note in accuracy.notes}) == met
+
+
+def test_only_the_check_counts_the_points_that_noise_puts_beyond_the_tolerance():
+    """On a slope fewer lie so far away than so high: two counts of one thing would contradict each other."""
+    rng = np.random.default_rng(3)
+    xy = rng.uniform(0, SIDE, (3_000, 2))
+    z = 0.5 * xy[:, 0] + 20 * np.sin(xy[:, 1] / 400) + 0.05 * rng.normal(size=len(xy))
+    accuracy = fit_horizon(PointSet(np.column_stack([xy + CORNER, z])), FitSettings(core="none")).accuracy
+    assert "count" not in with_code(accuracy.notes, "fitting.points-beyond-tolerance-as-noise").params
+    (check,) = (one for one in accuracy.checks if one.name == "interior tolerance")
+    assert check.passed
+    assert check.text.params["count"] == (np.abs(accuracy.residuals) > 0.1).sum() > 0
