@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 from geofit.data.prediction import Outlier
 from geofit.fitting.deletion import LinearFit
 
-__all__ = ["LIMIT", "find_outliers"]
+__all__ = ["LIMIT", "MOST", "find_outliers"]
 
 Floats = NDArray[np.float64]
 
 #: Left-out errors beyond this many times their standard deviation are listed.
 LIMIT = 3.5
 #: Largest share of the points that can be outliers: more of them are the rule.
-_MOST = 0.1
+MOST = 0.1
 
 
 def find_outliers(fit: LinearFit, factor: Floats, judged: NDArray[np.bool_] | None = None) -> tuple[Outlier, ...]:
@@ -47,7 +47,7 @@ def find_outliers(fit: LinearFit, factor: Floats, judged: NDArray[np.bool_] | No
     degrees = max(len(residual) - 3, 1)
     open_to = np.ones(len(residual), bool) if judged is None else judged
     found = []
-    for _ in range(int(_MOST * len(residual))):
+    for _ in range(int(MOST * len(residual))):
         held = 1 - np.diag(covariance) * given.weight
         known = present & open_to & (held > 1e-9)
         if not known.any() or degrees < 2:

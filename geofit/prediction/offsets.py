@@ -20,6 +20,7 @@ from geofit.data.prediction import Outlier, SourceOffset
 from geofit.fitting.calibration import Calibration
 from geofit.fitting.conflicts import trust_of_kinds
 from geofit.fitting.model import Model
+from geofit.fitting.outliers import MOST
 from geofit.fitting.posterior import Posterior
 
 __all__ = ["source_offsets"]
@@ -28,8 +29,6 @@ Ints = NDArray[np.int64]
 
 #: Minimum number of points of a kind, and the number of standard deviations from which an offset is significant.
 FEWEST, SURE = 10, 4.0
-#: Largest share of a kind's points that are wrong one by one: more of them show that the kind is offset.
-SINGLE = 0.1
 
 
 def source_offsets(
@@ -53,8 +52,9 @@ def source_offsets(
     compared = [code for code in np.argsort(trust_of_kinds(kinds), kind="stable") if counts[code] >= FEWEST]
     if len(compared) < 2:
         return ()
-    of_kind = kinds.codes[:, None] == np.array(compared[1:])
-    wrong = given.kept[:, None] == _single(kinds, given.kept, outliers)
+    others = compared[1:]
+    of_kind = kinds.codes[:, None] == np.array(others)
+    wrong = np.arange(len(kinds))[:, None] == _single(kinds, given.kept, outliers)
     unknown = np.hstack([of_kind, wrong]).astype(float)
     weighed = given.weight[:, None] * unknown
     matrix = given.matrix(given.plane)
@@ -68,15 +68,16 @@ def source_offsets(
     reference = kinds.table[compared[0]]
     found = [
         SourceOffset(kinds.table[code], reference, int(counts[code]), float(size), float(deviation), vertical)
-        for code, size, deviation in zip(compared[1:], offset, sd, strict=False)
+        for code, size, deviation in zip(others, offset[: len(others)], sd[: len(others)], strict=True)
         if abs(size) > max(SURE * deviation, model.problem.settings.interior_tolerance)
     ]
     return tuple(sorted(found, key=lambda one: -abs(one.offset) / max(one.sd, 1e-300)))
 
 
 def _single(kinds: Labels, kept: Ints, outliers: Sequence[Outlier]) -> Ints:
-    """Return the numbers of the outliers that are few among the points of their kind."""
+    """Return the rows of the outliers that are wrong one by one: many of a kind show that the kind is offset."""
     rows = np.flatnonzero(np.isin(kept, [one.index for one in outliers]))
-    codes, kind = kinds.codes, kinds.codes[rows]
-    few = np.bincount(kind, minlength=len(kinds.table)) <= SINGLE * np.bincount(codes, minlength=len(kinds.table))
-    return kept[rows[few[kind]]]
+    size = len(kinds.table)
+    counts, wrong = np.bincount(kinds.codes, minlength=size), np.bincount(kinds.codes[rows], minlength=size)
+    single = (wrong <= MOST * counts) | (counts < FEWEST)
+    return np.asarray(rows[single[kinds.codes[rows]]])

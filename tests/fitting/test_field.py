@@ -402,7 +402,7 @@ def test_shorter_spans_that_cannot_win_are_not_tried_and_the_field_is_the_same(s
     side = float(np.sqrt(len(plane)))
     data = Data(plane, z, np.full(len(z), np.nan), np.ones(len(z)), (0.0, side, 0.0, side), 20.0, trend)
     found = []
-    # Of spans that are no longer than the spacing nothing is concluded.
+    # Spans no longer than the spacing rule nothing out.
     for span in (longest_span, lambda space: 0.0):
         monkeypatch.setattr(resolution, "longest_span", span)
         tried.clear()

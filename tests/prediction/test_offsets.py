@@ -67,14 +67,18 @@ def test_points_of_one_kind_have_nothing_to_be_compared_with():
     assert found.offsets == ()
 
 
-@pytest.mark.parametrize("wrong", [-60.0, 60.0])
+@pytest.mark.parametrize(("wrong", "kind"), [(-60.0, "borehole"), (60.0, "borehole"), (-60.0, "adit")])
 @pytest.mark.parametrize("name", ["T3-T2", "T2-T1"])
-def test_one_wrong_collar_does_not_make_the_sections_look_offset(sample_site, name, wrong):
+def test_one_wrong_collar_does_not_make_the_sections_look_offset(sample_site, name, wrong, kind):
+    """Nor does the only point of a kind, which is compared with no other."""
     points = sample_site.horizons[name]
     (row,) = np.flatnonzero(points.hole == "ZK502")
     xyz = points.xyz.copy()
     xyz[row, 2] += wrong
-    found = examine(fit_horizon(points.with_(xyz=xyz), boundary=sample_site.boundary))
+    kinds = points.kind.astype(object)
+    kinds[kinds == "adit"] = "borehole"
+    kinds[row] = kind
+    found = examine(fit_horizon(points.with_(xyz=xyz, kind=kinds.astype(str)), boundary=sample_site.boundary))
     assert [one.index for one in found.outliers] == [row]
     assert found.offsets == ()
 
