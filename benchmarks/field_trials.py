@@ -464,10 +464,10 @@ TRIALS = (
         "no",
     ),
     (
-        "knots for points next to a core in the patch of each alone (nine patches, hierarchical)",
-        "36 of sites 0 to 199 have points beyond the tolerance: on 35 it would take more control points, 10,163 to "
-        "16,348 in place of 9,591 to 15,738: the points lie in the patches beside the core, whose rows are the "
-        "longest, and each seam takes knots of its own",
+        "separate knots in each of the nine patches for points next to a core (hierarchical)",
+        "36 of sites 0 to 199 have points beyond the tolerance; 35 of them need more control points this way (10,163 "
+        "to 16,348 instead of 9,591 to 15,738), because the points lie beside the core, where the rows are longest, "
+        "and every seam adds knots",
         "no",
     ),
 )
