@@ -24,7 +24,19 @@ from geofit.report.histogram import histogram, normal_plot
 from geofit.report.result import HorizonResult
 from geofit.report.section_sheet import draw_section, section_sheet
 from geofit.report.stereonet import StereonetContent, angles, stereonet
-from geofit.report.style import CORE, FAIL, HORIZONS, MUTED, PASS, TEXT, WARNING, drawing, legend_columns, shortened
+from geofit.report.style import (
+    CORE,
+    FAIL,
+    HORIZONS,
+    MUTED,
+    PASS,
+    TEXT,
+    WARNING,
+    clauses_in_lines,
+    drawing,
+    legend_columns,
+    shortened,
+)
 from geofit.report.uncertainty import uncertainty_map
 
 if TYPE_CHECKING:
@@ -148,13 +160,17 @@ def write_picture(result: HorizonResult, pictures: Pictures, path: Path, t: Lang
     """Write the one picture that shows a horizon: in space, and its deviations."""
     from matplotlib.figure import Figure
 
-    a, view = result.accuracy, pictures.scene
+    a, view, verdict = result.accuracy, pictures.scene, result.verdict
+    data_lamp, *others = (translate(lamp.text, t) for lamp in verdict.lamps)
+    # The last one is long: lines of its own.
+    last = clauses_in_lines(" · ".join(others[1:]), 8, 145)
+    head = 1.15 + 0.16 * (len(last) - 1)
     shape = plots.map_shape(result, plan=False)
     tall = 0.0 if view is None else view.image.shape[0] / view.image.shape[1]
-    height = float(np.clip(max(4.6 * shape, 6.4 * tall * 1.1) + 1.9, 4.2, 8.5))
+    height = float(np.clip(max(4.6 * shape, 6.4 * tall * 1.1) + 1.9, 4.2, 8.5)) + head - 1.15
     with drawing():
         figure = Figure(figsize=(14.0, height), dpi=140)
-        body = (height - 1.15) / height
+        body = (height - head) / height
         left = figure.add_axes((0.025, 0.12, 0.46, body - 0.12), anchor="N")
         if view is None:
             left.text(0.5, 0.5, t("no OpenGL, no 3D picture"), ha="center", color=MUTED, transform=left.transAxes)
@@ -174,14 +190,11 @@ def write_picture(result: HorizonResult, pictures: Pictures, path: Path, t: Lang
         )
         figure.text(0.025, top, result.name, size=17, weight="bold", color=TEXT)
         figure.text(0.025, second, line, color=MUTED, size=10)
-        verdict = result.verdict
         word = {"PASS": t("PASS"), "WARNING": t("WARNING"), "FAIL": t("FAIL")}[verdict.word]
         colour = {"PASS": PASS, "WARNING": WARNING, "FAIL": FAIL}[verdict.word]
         figure.text(0.555, top, word, size=17, weight="bold", color=colour)
-        data_lamp, *others = (translate(lamp.text, t) for lamp in verdict.lamps)
-        # The last one is long: a line of its own.
         figure.text(0.555, second, " · ".join([data_lamp, *others[:1]]), color=MUTED, size=9)
-        figure.text(0.555, second - 0.028, " · ".join(others[1:]), color=MUTED, size=8)
+        figure.text(0.555, second - 0.08 / height, "\n".join(last), color=MUTED, size=8, va="top", linespacing=1.4)
         data = png(figure, margin=40)
     with replacing(path) as part:
         part.write_bytes(data)

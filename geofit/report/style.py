@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -28,6 +29,7 @@ __all__ = [
     "TEXT",
     "Band",
     "bands",
+    "clauses_in_lines",
     "drawing",
     "horizon_colours",
     "kind_style",
@@ -117,6 +119,22 @@ def text_width(text: str, size: float) -> float:
     (3.88, 7.76)
     """
     return 0.55 * size * 0.3528 * sum(1 + (ord(letter) > 0x2E80) for letter in text)
+
+
+def clauses_in_lines(text: str, size: float, room: float) -> list[str]:
+    """Break a text between its clauses into lines of about ``room`` mm at most, in type of a size (points).
+
+    Examples
+    --------
+    >>> clauses_in_lines("one; two; three", 10.0, 20.0)
+    ['one; two;', 'three']
+    """
+    lines = [""]
+    for clause in re.split(r"(?<=; )|(?<=；)", text):
+        if lines[-1] and text_width(lines[-1] + clause.rstrip(), size) > room:
+            lines.append("")
+        lines[-1] += clause
+    return [line.rstrip() for line in lines]
 
 
 @dataclass(frozen=True)
