@@ -161,13 +161,13 @@ def write_picture(result: HorizonResult, pictures: Pictures, path: Path, t: Lang
     from matplotlib.figure import Figure
 
     a, view, verdict = result.accuracy, pictures.scene, result.verdict
-    data_lamp, *others = (translate(lamp.text, t) for lamp in verdict.lamps)
-    # The last one is long: lines of its own.
-    last = clauses_in_lines(" · ".join(others[1:]), 8, 145)
-    head = 1.15 + 0.16 * (len(last) - 1)
+    *first, away = (translate(lamp.text, t) for lamp in verdict.lamps)
+    # Names of checks and holes make both lines long.
+    lines = [line for text in (" · ".join(first), away) for line in clauses_in_lines(text, 8.5, 160)]
+    head = 0.99 + 0.17 * (len(lines) - 1)
     shape = plots.map_shape(result, plan=False)
     tall = 0.0 if view is None else view.image.shape[0] / view.image.shape[1]
-    height = float(np.clip(max(4.6 * shape, 6.4 * tall * 1.1) + 1.9, 4.2, 8.5)) + head - 1.15
+    height = float(np.clip(max(4.6 * shape, 6.4 * tall * 1.1) + 1.9, 4.2, 8.5)) + head - 1.16
     with drawing():
         figure = Figure(figsize=(14.0, height), dpi=140)
         body = (height - head) / height
@@ -193,8 +193,7 @@ def write_picture(result: HorizonResult, pictures: Pictures, path: Path, t: Lang
         word = {"PASS": t("PASS"), "WARNING": t("WARNING"), "FAIL": t("FAIL")}[verdict.word]
         colour = {"PASS": PASS, "WARNING": WARNING, "FAIL": FAIL}[verdict.word]
         figure.text(0.555, top, word, size=17, weight="bold", color=colour)
-        figure.text(0.555, second, " · ".join([data_lamp, *others[:1]]), color=MUTED, size=9)
-        figure.text(0.555, second - 0.08 / height, "\n".join(last), color=MUTED, size=8, va="top", linespacing=1.4)
+        figure.text(0.555, second + 0.12 / height, "\n".join(lines), color=MUTED, size=8.5, va="top", linespacing=1.4)
         data = png(figure, margin=40)
     with replacing(path) as part:
         part.write_bytes(data)

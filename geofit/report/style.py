@@ -122,15 +122,15 @@ def text_width(text: str, size: float) -> float:
 
 
 def clauses_in_lines(text: str, size: float, room: float) -> list[str]:
-    """Break a text between its clauses into lines of about ``room`` mm at most, in type of a size (points).
+    """Break a text between its clauses and names into lines of about ``room`` mm at most, in type of a size (points).
 
     Examples
     --------
-    >>> clauses_in_lines("one; two; three", 10.0, 20.0)
-    ['one; two;', 'three']
+    >>> clauses_in_lines("one; two, three", 10.0, 20.0)
+    ['one; two,', 'three']
     """
     lines = [""]
-    for clause in re.split(r"(?<=; )|(?<=；)", text):
+    for clause in re.split(r"(?<=[;,] )|(?<=[；，、])", text):
         if lines[-1] and text_width(lines[-1] + clause.rstrip(), size) > room:
             lines.append("")
         lines[-1] += clause
