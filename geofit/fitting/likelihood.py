@@ -109,11 +109,15 @@ def plane_coefficients(space: TensorSpace) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class _Solved:
-    """The parameters evaluated last, the factor of P, and K times the planes with what P gives for heights and it."""
+    """The parameters evaluated last, the factor of P, and K times the planes with what P gives for heights and it.
+
+    ``floor`` is the least misfit that stands out from rounding.
+    """
 
     key: _Key
     lower: Floats
     columns: tuple[Floats, Floats, Floats]
+    floor: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -245,8 +249,8 @@ class Likelihood:
             stretch=key[2:],
             hold=hold,
             misfit=variance * self.free,
-            # At its floor the misfit is constant.
-            weight=1 / variance if variance * self.free > self.floor else 0.0,
+            # At its floor the misfit says nothing of the parameters.
+            weight=1 / variance if variance * self.free > self._solved.floor else 0.0,
             lower=self._solved.lower,
             slopes=slopes,
             covariance=covariance,
@@ -330,6 +334,7 @@ class Likelihood:
             energy, bent, determinant = self._prior(kappa, key[2:])
             system = rho * energy
             system[: len(self.band)] += self.band
+            largest = float(system[0].max())
             lower = cholesky_banded(system, lower=True, overwrite_ab=True, check_finite=False)
         except LinAlgError:
             return UNSOLVABLE, math.nan, 0.0
@@ -337,13 +342,17 @@ class Likelihood:
         solved = cho_solve_banded((lower, True), np.column_stack([self.columns, held]), check_finite=False)
         count = self.columns.shape[1]
         free, drifted = solved[:, :count], solved[:, count:]
-        self._solved = _Solved(key, lower, (held, free, drifted))
+        # Sums that smooth fields of long range nearly cancel leave no more of the misfit than their rounding; it counts
+        # for each point, so that the value is certain to about 1.
+        rounding = float(np.finfo(np.float64).eps) * largest * float((free**2).sum())
+        floor = max(self.floor, self.free * rounding)
+        self._solved = _Solved(key, lower, (held, free, drifted), floor)
         # Differences of large numbers are avoided: A' W A = P - K, and K acts on planes through kappa alone.
         moment, cross = self.drift.T @ held - held.T @ drifted, held.T @ free
         square = self.square - float((self.columns * free).sum())
         size = len(self.right)
         value = count * (2 * float(np.log(lower[0]).sum()) - determinant - size * math.log(rho))
-        over, variance, hold = self._over_planes(moment, cross, square, *self._holds(kappa, rho))
+        over, variance, hold = self._over_planes(moment, cross, square, floor, *self._holds(kappa, rho))
         return (value + over, variance, hold) if over < UNSOLVABLE else (UNSOLVABLE, math.nan, 0.0)
 
     def _holds(self, kappa: float, rho: float) -> tuple[Floats, Floats]:
@@ -355,7 +364,7 @@ class Likelihood:
         return _WIDER, own / _WIDER
 
     def _over_planes(
-        self, moment: Floats, cross: Floats, square: float, wider: Floats, hold: Floats
+        self, moment: Floats, cross: Floats, square: float, floor: float, wider: Floats, hold: Floats
     ) -> tuple[float, float, float]:
         """Return what the planes add to -2 l, the least misfit's part included, the noise's variance, and the hold."""
         aim, slopes = self.slope.aim, len(moment) - 1
@@ -369,7 +378,7 @@ class Likelihood:
             return UNSOLVABLE, math.nan, 0.0
         sign, volume = np.linalg.slogdet(moment + prior)
         misfit = square + hold * float(aim[1:] @ aim[1:]) - (pull * found).sum(axis=(1, 2))
-        misfit = np.maximum(misfit, self.floor)
+        misfit = np.maximum(misfit, floor)
         value = self.free * np.log(misfit / self.free) + self.columns.shape[1] * volume
         if self.held:
             # The scales of a Cauchy distribution as a mixture of normal ones.

@@ -412,3 +412,22 @@ def test_shorter_spans_that_cannot_win_are_not_tried_and_the_field_is_the_same(s
     assert (field, size) == (expected, wanted)
     assert count <= more
     assert seed != 0 or count < more
+
+
+@pytest.mark.parametrize(("grid", "seed"), [(False, 1), (False, 8), (True, 11), (True, 13)])
+def test_rounding_is_not_taken_for_a_good_fit(grid, seed):
+    """The smoothest fields of long range cancel in sums; a misfit that is lost in rounding must not attract the search.
+
+    The order of the points decides on the rounding alone.
+    """
+    rng, side = np.random.default_rng(seed), 1000.0
+    if grid:
+        lines = np.linspace(80, 920, 6)
+        xy = np.stack(np.meshgrid(lines, lines, indexing="ij"), axis=-1).reshape(-1, 2) + rng.uniform(-1, 1, (36, 2))
+    else:
+        xy = rng.uniform(0, side, (50, 2))
+    z = 600 * np.exp(-xy[:, 0] / 400) + rng.normal(0, 0.5, len(xy))
+    corners = np.array([(0, 0), (side, 0), (side, side), (0, side)])
+    for order in (slice(None), slice(None, None, -1)):
+        noise = fit_horizon(PointSet(np.column_stack([xy, z])[order]), None, corners).diagnostics["noise"]
+        assert 0.3 < noise < 0.7
