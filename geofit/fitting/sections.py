@@ -8,7 +8,7 @@ from scipy.spatial import KDTree
 
 from geofit.data.points import PointSet
 
-__all__ = ["find_sections", "section_labels"]
+__all__ = ["crossing_lines", "find_sections", "section_labels"]
 
 Floats = NDArray[np.float64]
 
@@ -20,6 +20,9 @@ FEWEST = 5
 MOST = 20_000
 #: How far a point may lie off its line, as a share of the median distance to the nearest neighbour.
 STRAY = 0.1
+#: Neighbours of a point among which one on another line is looked for; lines that cross do so by more than these
+#: degrees.
+AROUND, CROSSING = 12, 30.0
 
 
 def section_labels(points: PointSet) -> NDArray[np.str_]:
@@ -46,11 +49,62 @@ def find_sections(plan: Floats) -> NDArray[np.str_]:
         "line 1", "line 2", ... from one side to the other; empty for points on no line, and for all if fewer
         than two lines are found.
     """
-    none = np.full(len(plan), "", dtype="<U12")
     found_at = KDTree(plan).query(plan, k=3)
     distance, index = np.asarray(found_at[0]), np.asarray(found_at[1])
-    apart = distance[:, 1:].ravel() > 0
-    step = (plan[index[:, 1:]] - plan[:, None]).reshape(-1, 2)[apart]
+    step = (plan[index[:, 1:]] - plan[:, None]).reshape(-1, 2)
+    return _lines(plan, step, float(np.median(distance[:, 1])))
+
+
+def crossing_lines(plan: Floats, lines: NDArray[np.str_]) -> NDArray[np.str_]:
+    """Find the lines that cross those found: points on a grid lie on lines of two directions.
+
+    Parameters
+    ----------
+    plan : (n, 2) array
+        Easting and northing, metres.
+    lines : (n,) array of str
+        What :func:`find_sections` found.
+
+    Returns
+    -------
+    labels : (n,) array of str
+        Names of the other lines, empty for points on none.
+    """
+    none = np.full(len(plan), "", dtype="<U12")
+    on_line = np.flatnonzero(lines != "")
+    if len(on_line) <= AROUND:
+        return none
+    mine, at = lines[on_line], plan[on_line]
+    found_at = KDTree(at).query(at, k=AROUND)
+    distance, index = np.asarray(found_at[0]), np.asarray(found_at[1])
+    step = at[index] - at[:, None]
+    turned = np.exp(2j * np.arctan2(step[..., 1], step[..., 0]))
+    other = mine[index] != mine[:, None]
+    # The first neighbour of a point is the point itself.
+    direction = turned[:, 1:][~other[:, 1:]].mean()
+    nearest = other.argmax(axis=1)
+    row = np.flatnonzero(other.any(axis=1))
+    off = np.degrees(np.abs(np.angle(turned[row, nearest[row]] / direction))) / 2
+    crossing = off > CROSSING
+    labels = none.copy()
+    labels[on_line] = _lines(at, step[row, nearest[row]][crossing], float(np.median(distance[:, 1])))
+    return labels
+
+
+def _lines(plan: Floats, step: Floats, spacing: float) -> NDArray[np.str_]:
+    """Return (n,) the lines in the direction in which most of the steps (k, 2) between neighbours lie.
+
+    Parameters
+    ----------
+    plan : (n, 2) array
+        Easting and northing, metres.
+    step : (k, 2) array
+        From points to their neighbours, metres.
+    spacing : float
+        Median distance to the nearest neighbour, metres.
+    """
+    none = np.full(len(plan), "", dtype="<U12")
+    step = step[np.linalg.norm(step, axis=1) > 0]
     if len(step) == 0:
         return none
     angle = np.degrees(np.arctan2(step[:, 1], step[:, 0])) % 180
@@ -62,7 +116,6 @@ def find_sections(plan: Floats) -> NDArray[np.str_]:
     direction = np.angle(doubled) / 2
     offset = plan @ np.array([np.sin(direction), -np.cos(direction)])
     order = np.argsort(offset, kind="stable")
-    spacing = float(np.median(distance[:, 1]))
     group = np.cumsum(np.concatenate([[0], np.diff(offset[order]) > STRAY * spacing]))
     along = plan @ np.array([np.cos(direction), np.sin(direction)])
     labels, found = none.copy(), 0

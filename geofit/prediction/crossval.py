@@ -15,6 +15,7 @@ from geofit.fitting.calibration import Calibration, calibrate, gathered, share_i
 from geofit.fitting.deletion import LinearFit, Prediction
 from geofit.fitting.model import Model
 from geofit.fitting.posterior import Posterior
+from geofit.fitting.sections import crossing_lines
 from geofit.prediction.folds import beyond_hull, block_labels, groups_of, hole_labels
 from geofit.prediction.kriging import krige_left_out
 from geofit.prediction.small_sets import Refits
@@ -40,20 +41,30 @@ class Fold:
 
 
 def cross_validation_folds(model: Model, fit: LinearFit | Refits) -> list[Fold]:
-    """Leave out every hole, every section and every block of a height field in turn."""
+    """Leave out every hole, every section and every block of a height field in turn.
+
+    Where no section is named, and points lie on lines of two directions, those count whose lines the others predict
+    worse: along the strike each line has a twin, and says nothing of the ground between the lines that cross it.
+    """
     given = fit.posterior
     points = model.problem.points[given.kept]
-    labels: list[tuple[Scheme, NDArray[np.str_]]] = [
-        ("hole", hole_labels(points)),
-        ("section", model.problem.parametrization.section[given.kept]),
-        ("block", block_labels(given.plane, BLOCK)),
-    ]
-    folds = []
-    for scheme, label in labels:
+    section = model.problem.parametrization.section[given.kept]
+    lines = [section]
+    if not (model.problem.points.section != "").any() and (section != "").any():
+        lines.append(crossing_lines(points.xyz[:, :2], section))
+
+    def fold(scheme: Scheme, label: NDArray[np.str_]) -> Fold | None:
         groups = groups_of(label)
-        if len(groups) >= 2:
-            folds.append(Fold(scheme, label, groups, fit.without(groups)))
-    return folds
+        return Fold(scheme, label, groups, fit.without(groups)) if len(groups) >= 2 else None
+
+    def error(one: Fold) -> float:
+        rms = _rms(one.predicted.error)
+        return rms if np.isfinite(rms) else -1.0
+
+    sections = [one for one in (fold("section", label) for label in lines) if one is not None]
+    worse = max(sections, key=error, default=None)
+    every = (fold("hole", hole_labels(points)), worse, fold("block", block_labels(given.plane, BLOCK)))
+    return [one for one in every if one is not None]
 
 
 def one_by_one(model: Model, given: Posterior) -> list[Fold]:

@@ -17,6 +17,7 @@ from geofit.data.errors import SettingsError
 from geofit.data.prediction import PredictionResult
 from geofit.fitting.calibration import BAND, LeftOutPoints, calibrate, factor_for, share_inside, uncalibrated
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.fitting.sections import crossing_lines, find_sections
 from geofit.prediction.bands import grid_over
 from geofit.prediction.examine import examine
 from geofit.prediction.folds import beyond_hull, block_labels, groups_of, hole_labels
@@ -31,6 +32,47 @@ SITE = Path(__file__).parents[2] / "sample_data" / "site.toml"
 def cloud() -> tuple[np.ndarray, np.ndarray]:
     plane = np.random.default_rng(5).uniform(0, 10, (80, 2))
     return plane, np.sin(plane[:, 0] / 2) + 0.3 * plane[:, 1]
+
+
+def grid(nx: int, ny: int) -> np.ndarray:
+    """Places of holes on a grid over 1 km x 1 km."""
+    lines = np.meshgrid(np.linspace(30, 970, nx), np.linspace(30, 970, ny), indexing="ij")
+    return np.stack(lines, axis=-1).reshape(-1, 2)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3])
+@pytest.mark.parametrize(("nx", "ny"), [(7, 7), (7, 12), (20, 6)])
+def test_points_on_a_grid_lie_on_lines_of_two_directions(nx, ny, turn):
+    plan = grid(nx, ny) @ np.array([(np.cos(turn), np.sin(turn)), (-np.sin(turn), np.cos(turn))])
+    lines = find_sections(plan)
+    crossing = crossing_lines(plan, lines)
+    counts = {len(np.unique(lines)), len(np.unique(crossing))}
+    assert counts == {nx, ny}
+    assert "" not in lines
+    assert "" not in crossing
+    # Two points of one line are not on one of the others.
+    assert len(set(zip(lines.tolist(), crossing.tolist(), strict=True))) == nx * ny
+
+
+def test_lines_without_common_places_are_not_crossed():
+    rng = np.random.default_rng(4)
+    along = [np.column_stack([np.full(30, 60.0 * k), rng.uniform(0, 600, 30)]) for k in range(8)]
+    plan = np.concatenate(along)
+    lines = find_sections(plan)
+    assert len(np.unique(lines)) == 8
+    assert (crossing_lines(plan, lines) == "").all()
+
+
+def test_a_grid_along_the_strike_is_judged_as_one_across_it():
+    """Along the strike each left-out line has a twin, which says nothing of the ground between the other lines."""
+    plan, ends = grid(7, 7), np.array([(0, 0), (1000, 0), (1000, 1000), (0, 1000)])
+    noise = np.random.default_rng(1).normal(0, 0.03, len(plan))
+    for xy in (plan, plan[:, ::-1]):
+        ramp = 50 + np.clip((xy[:, 0] - 400) / 2, 0, 100)
+        found = examine(fit_horizon(PointSet(np.column_stack([xy, ramp + noise])), None, ends))
+        (section,) = [one for one in found.left_out if one.scheme == "section"]
+        assert section.groups == 7
+        assert section.rms > 10
 
 
 def test_labels_of_holes_sections_and_blocks():
