@@ -109,6 +109,7 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
             message("io.x-is-easting", "x is the easting, y the northing."),
         )
     if not known:
+        _warn_of_halves(rows, x, y)
         _warn_of_digits(rows, x, y)
         _warn_of_strays(rows, x, y, swapped)
     elif off.size:
@@ -143,6 +144,34 @@ def _reject_placeholders(rows: Rows, x: Floats, y: Floats, region: Region | None
             message("io.row-at-placeholder", "x = 0, y = 0 marks a place that is unknown: the others are far from it"),
             message("io.complete-coordinates", "Complete its coordinates, or remove the row."),
         )
+
+
+def _warn_of_halves(rows: Rows, x: Floats, y: Floats) -> None:
+    """Warn of two groups far apart of which one lies on the other with x and y exchanged: which one is not clear."""
+    first, second = rows.ok & (x < y), rows.ok & (x > y)
+    if not (first.any() and second.any()):
+        return
+    group, other, turned = _Box.of(x, y, first), _Box.of(x, y, second), _Box.of(y, x, second)
+    extent = max(group.extent, other.extent)
+    if group.apart(other) < OTHER_SYSTEM * extent or group.apart(turned) > extent:
+        return
+    i, k = int(np.flatnonzero(first)[0]), int(np.flatnonzero(second)[0])
+    rows.warn(
+        max(i, k),
+        "x",
+        message(
+            "io.half-of-axes-exchanged",
+            "x and y appear to be exchanged in {count} of {total} rows: x is around {x:.0f} in row {row}, and {y:.0f} "
+            "in row {other}",
+            count=min(int(first.sum()), int(second.sum())),
+            total=int(rows.ok.sum()),
+            x=x[min(i, k)],
+            y=x[max(i, k)],
+            row=int(rows.line[min(i, k)]),
+            other=int(rows.line[max(i, k)]),
+        ),
+        message("io.x-is-easting", "x is the easting, y the northing."),
+    )
 
 
 def _warn_of_digits(rows: Rows, x: Floats, y: Floats) -> None:
@@ -299,6 +328,11 @@ class _Box(NamedTuple):
     def off_in_one(self, x: float, y: float) -> bool:
         """Return whether a place lies outside in one coordinate, and inside in the other."""
         return (self.west <= x <= self.east) != (self.south <= y <= self.north)
+
+    def apart(self, other: _Box) -> float:
+        """Return how far two boxes lie from each other."""
+        aside = max(other.west - self.east, self.west - other.east, 0.0)
+        return float(np.hypot(aside, max(other.south - self.north, self.south - other.north, 0.0)))
 
     def away(self, x: float, y: float) -> float:
         return float(np.hypot(max(self.west - x, x - self.east, 0.0), max(self.south - y, y - self.north, 0.0)))

@@ -14,7 +14,8 @@ from geofit.data.messages import message
 from geofit.data.site import ImportIssue
 from geofit.io.columns import BODY_POINTS
 from geofit.io.journal import Journal
-from geofit.io.rows import NO_DATA, read_rows
+from geofit.io.no_data import is_no_data
+from geofit.io.rows import read_rows
 from geofit.io.source import Source
 
 __all__ = ["PickedPoints", "read_body_points"]
@@ -62,7 +63,7 @@ def _picked(source: Source, journal: Journal) -> PickedPoints:
     rows = read_rows(source, BODY_POINTS, journal)
     (x, y), z = rows.places(), rows.numbers("z", no_data=True)
     normals = np.column_stack([rows.numbers(role, required=False) for role in ("nx", "ny", "nz")])
-    unknown = ~np.isfinite(normals).all(axis=1) | np.isin(normals, NO_DATA).any(axis=1) | (normals == 0).all(axis=1)
+    unknown = ~np.isfinite(normals).all(axis=1) | is_no_data(normals).any(axis=1) | (normals == 0).all(axis=1)
     normals[unknown] = np.nan
     side = np.array([_side(word) for word in rows.text("side", required=False)])
     for i in np.flatnonzero((side == "?") & rows.ok).tolist():

@@ -25,6 +25,7 @@ from geofit.io.lower_limits import tops_from_above
 from geofit.io.rows import Rows, name_key, read_rows
 from geofit.io.source import Source, as_source
 from geofit.io.surveys import Collar, Stations, read_stations
+from geofit.io.tables import first_names, parse_numbers
 from geofit.io.units import METRES
 
 __all__ = ["Boreholes", "DipSign", "IntervalLog", "load_boreholes", "read_boreholes"]
@@ -43,7 +44,8 @@ SAME_RATIO = 0.01
 class Boreholes:
     """Holes in space with their logs, and what was found on the way.
 
-    ``paths`` holds the path of each hole, ``ends`` its depth in metres, ``logs`` one entry an interval table.
+    ``paths`` holds the path of each hole, ``ends`` its depth in metres, ``logs`` one entry an interval table;
+    ``collar`` is the name of the collar table.
     """
 
     holes: tuple[Hole, ...]
@@ -53,6 +55,7 @@ class Boreholes:
     issues: tuple[ImportIssue, ...] = ()
     counts: tuple[TableCount, ...] = ()
     inputs: Mapping[str, str] | None = None
+    collar: str = ""
 
 
 @arguments_checked
@@ -117,6 +120,7 @@ def read_boreholes(
         tuple(journal.issues),
         tuple(journal.counts),
         dict(journal.inputs),
+        found.collar,
     )
 
 
@@ -161,7 +165,7 @@ def load_boreholes(
         ends[name] = end if np.isfinite(end) else max(float(path.depth[-1]), deepest.get(name, 0.0))
         depth = np.union1d(path.depth[path.depth < ends[name]], [0.0, ends[name]])
         holes.append(Hole(name, "borehole", depth, path.at(depth)))
-    return Boreholes(tuple(holes), paths, ends, logs)
+    return Boreholes(tuple(holes), paths, ends, logs, collar=collar.name)
 
 
 def _read_collars(
@@ -275,8 +279,38 @@ def _drape(rows: Rows, x: Floats, y: Floats, z: Floats, ground: Ground) -> None:
 def _collar_stations(rows: Rows, name: list[str], dip: DipSign | None, declination: float) -> dict[str, Stations]:
     """Return the straight holes whose azimuth and dip are in the collar table."""
     if not {"azimuth", "dip"} <= set(rows.columns):
+        _warn_of_half_attitude(rows)
         return {}
     return Stations.from_rows(rows, name, np.zeros(len(rows)), dip, blank_is_vertical=True, declination=declination)
+
+
+def _warn_of_half_attitude(rows: Rows) -> None:
+    """Warn of collars that have only one of azimuth and dip, unless it is that of vertical holes."""
+    for role, missing, upright in (("azimuth", "dip", 0.0), ("dip", "azimuth", 90.0)):
+        if role not in rows.columns:
+            continue
+        angles, _ = parse_numbers(rows.table.columns[rows.columns[role]], rows.table.decimal)
+        if not (np.isfinite(angles) & (np.abs(angles) != upright)).any():
+            continue
+        unread = [name for j, name in enumerate(rows.table.header) if j not in rows.columns.values()]
+        reason = message(
+            "io.half-attitude",
+            "No column is recognised as {missing}, so '{column}' is not used: holes without a survey are vertical",
+            column=Untranslated(rows.table.header[rows.columns[role]]),
+            missing=missing,
+        )
+        rows.journal.add(
+            "warning",
+            rows.file,
+            reason,
+            message(
+                "io.name-column-of-angle",
+                "Name its column: columns = {entry}; dips are from the horizontal. Not read: {names}.",
+                entry=f"{{ {missing} = ... }}",
+                names=first_names(unread) if unread else message("data.none", "none"),
+            ),
+            column=rows.table.header[rows.columns[role]],
+        )
 
 
 def _by_elevation(rows: Rows, name: Strings, top: Floats, base: Floats, mouth: Floats) -> bool:

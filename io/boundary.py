@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +15,13 @@ from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.geometry.area import fault_of_area
 from geofit.io.columns import BOUNDARY
+from geofit.io.crs import list_system
 from geofit.io.journal import Journal
 from geofit.io.parser_errors import parser_message
 from geofit.io.rows import read_rows
 from geofit.io.sniff import decode
 from geofit.io.source import Source, as_source
+from geofit.io.units import map_units
 from geofit.io.vector import RING
 
 __all__ = ["load_boundary", "read_boundary"]
@@ -107,7 +110,8 @@ def _from_table(source: Source, journal: Journal) -> Floats:
 def _from_geojson(source: Source, journal: Journal) -> Floats:
     text, _ = decode(journal.read(source), source.name, source.encoding)
     try:
-        rings = _rings(json.loads(text))
+        top = json.loads(text)
+        rings, crs = _rings(top), _system_of(top)
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
         what, line = parser_message(error)
         raise InputError(
@@ -146,7 +150,17 @@ def _from_geojson(source: Source, journal: Journal) -> Floats:
             ),
             message("io.project-degrees", "If they are degrees, project them to the site's grid."),
         )
+    corners *= map_units(source, crs, journal)[0]
+    if crs:
+        list_system(crs, corners[:, 0], corners[:, 1], source.name, journal)
     return corners
+
+
+def _system_of(top: dict[str, Any]) -> str:
+    """Return the code of the coordinate system that GeoJSON states, as was usual before RFC 7946; empty if none."""
+    crs = top.get("crs")
+    name = str((crs.get("properties") or {}).get("name") or "") if isinstance(crs, dict) else ""
+    return re.sub(r"(?i)^urn:ogc:def:crs:(\w+):[^:]*:", r"\1:", name)
 
 
 def _rings(node: Any) -> list[Any]:

@@ -20,6 +20,9 @@ GROUND_SPREAD, GROUND_LEAST = 8.0, 5.0
 #: A collar is off its neighbours, of which so many are compared, if it lies outside their elevations by more than these
 #: differ, this many times the usual difference per distance, and at least so many metres.
 NEAR_SPREAD, NEAR_LEAST, NEAREST = 12.0, 20.0, 8
+#: An elevation tilts the plane of the collars if it lies off it by more than so many times the usual distance; this
+#: share of the elevations stays in any case.
+TILTING, FEWEST = 8.0, 0.8
 #: Where more than this share of the collars is off, one warning counts them.
 FEW = 0.05
 
@@ -112,9 +115,20 @@ def _check_near(rows: Rows, used: NDArray[np.intp], height: Floats, allowed: Flo
 
 
 def _plane(plan: Floats, z: Floats) -> Floats:
-    """Return the plane through elevations at (n, 2) places: on a slope, the nearest collars of an outer one differ."""
+    """Return the plane through elevations at (n, 2) places: on a slope, the nearest collars of an outer one differ.
+
+    Least squares, again and again without the elevations that lie so far off it that they tilt it, the farthest first.
+    The least sum of absolute differences would follow a dense core alone, and find the holes around it off.
+    """
     terms = np.column_stack((np.ones(len(plan)), plan - plan.mean(axis=0)))
-    return np.asarray(terms @ np.linalg.lstsq(terms, z, rcond=None)[0])
+    kept = np.ones(len(z), bool)
+    while True:
+        plane = np.asarray(terms @ np.linalg.lstsq(terms[kept], z[kept], rcond=None)[0])
+        apart = np.abs(z - plane)
+        far = kept & (apart > max(TILTING * _spread(apart[kept]), 0.5 * apart[kept].max()))
+        if not far.any() or (kept & ~far).sum() < FEWEST * len(z):
+            return plane
+        kept &= ~far
 
 
 def _spread(values: Floats) -> float:

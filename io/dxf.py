@@ -15,7 +15,7 @@ from geofit.data.errors import InputError
 from geofit.data.messages import EMPTY, Message, message
 from geofit.io.journal import Journal
 from geofit.io.source import Source
-from geofit.io.units import list_conversion, metres_of
+from geofit.io.units import grid_unit
 
 __all__ = [
     "EXPLODE",
@@ -39,7 +39,16 @@ BLOCK = message("io.block-not-read", "Lines in a block are not read")
 EXPLODE = message("io.explode-block", "Explode the block in CAD.")
 
 #: $INSUNITS of the units that are not metres, and drawing units a metre.
-_UNITS = {1: ("inches", 39.3701), 2: ("feet", 3.28084), 4: ("millimetres", 1000.0), 5: ("centimetres", 100.0)}
+_UNITS = {
+    1: ("inches", 39.3701),
+    2: ("feet", 3.28084),
+    3: ("miles", 1 / 1609.344),
+    4: ("millimetres", 1000.0),
+    5: ("centimetres", 100.0),
+    7: ("kilometres", 0.001),
+    10: ("yards", 1.09361),
+    21: ("US survey feet", 3937 / 1200),
+}
 
 
 @dataclass(frozen=True)
@@ -84,10 +93,7 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
         If the file is missing, or no drawing that can be read.
     """
     journal.read(source)
-    stated = source.unit or source.usual_unit
-    factor = 1.0 if stated is None else metres_of(stated, source.name)
-    if stated is not None:
-        list_conversion(stated, ("x", "y", "z"), source.name, journal)
+    factor = grid_unit(source, journal)
     with _readable(source):
         document = _document(source)
         entities, first = [], 1
@@ -126,9 +132,7 @@ def closed_lines(
     from ezdxf.path import make_path
 
     journal.read(source)
-    factor = 1.0 if source.unit is None else metres_of(source.unit, source.name)
-    if source.unit is not None:
-        list_conversion(source.unit, ("x", "y", "z"), source.name, journal)
+    factor = grid_unit(source, journal)
     found: list[ClosedLine] = []
     with _readable(source):
         document = _document(source)
@@ -280,11 +284,13 @@ def _clean(text: str) -> str:
 
 
 def _vertices(raw: Any, kind: str) -> list[tuple[float, float, float]]:
+    """Return the points of an entity in world coordinates: flat entities, texts and blocks have some of their own."""
     if kind == "LWPOLYLINE":
-        level = float(raw.dxf.get("elevation", 0.0))
-        return [(p[0], p[1], level) for p in raw.get_points("xy")]
-    if kind == "POLYLINE" and (raw.is_2d_polyline or raw.is_3d_polyline):
+        places = list(raw.vertices_in_ocs())
+    elif kind == "POLYLINE" and (raw.is_2d_polyline or raw.is_3d_polyline):
         places = [v.dxf.location for v in raw.vertices]
+        if raw.is_2d_polyline and (level := raw.dxf.elevation.z):
+            places = [place.replace(z=level) for place in places]
     elif kind == "LINE":
         places = [raw.dxf.start, raw.dxf.end]
     elif kind == "POINT":
@@ -293,6 +299,8 @@ def _vertices(raw: Any, kind: str) -> list[tuple[float, float, float]]:
         places = [raw.dxf.insert]
     else:
         places = []
+    if kind in ("LWPOLYLINE", "TEXT", "INSERT") or (kind == "POLYLINE" and raw.is_2d_polyline):
+        places = list(raw.ocs().points_to_wcs(places))
     return [(p.x, p.y, p.z) for p in places]
 
 

@@ -11,7 +11,7 @@ from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table, read_table
 
-__all__ = ["TABLE_FORMATS", "USUAL_TABLES", "read_any_table", "table_names"]
+__all__ = ["TABLE_FORMATS", "USUAL_TABLES", "hidden_tables", "read_any_table", "table_names"]
 
 #: File endings by the module that reads them; every other file is a text table.
 TABLE_FORMATS = {
@@ -60,6 +60,15 @@ def table_names(source: Source) -> tuple[str, ...]:
         case _:
             return ("",)
     return names(source)
+
+
+def hidden_tables(source: Source) -> tuple[str, ...]:
+    """Return the sheets of a workbook that it does not show; other formats hide none."""
+    if TABLE_FORMATS.get(source.path.suffix.casefold()) != "workbook":
+        return ()
+    from geofit.io.workbook import hidden_sheets
+
+    return hidden_sheets(source)
 
 
 def read_any_table(source: Source, journal: Journal, kind: str = "") -> Table:

@@ -13,6 +13,7 @@ from geofit.data.points import PointSet
 from geofit.data.site import Ground
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
+from geofit.io.no_data import blank_nodes
 from geofit.io.sniff import decode
 from geofit.io.source import Source, as_source
 from geofit.io.units import grid_unit
@@ -92,7 +93,7 @@ def load_grid(source: Source, horizon: str, horizons: HorizonNames, journal: Jou
             message("io.state-grid-horizon", 'State horizon = "..." in [[grids]], or add the [[horizon]].'),
             file=source.name,
         )
-    own = Journal()
+    own = Journal(systems=journal.systems)
     grid = load_ground(source, own)
     for file, digest in own.inputs.items():
         journal.inputs[file] = digest
@@ -166,6 +167,8 @@ def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
         raise
     blank = ~np.isfinite(z) | (z == head.get("nodata_value", -9999.0))
     z[blank] = np.nan
+    blank_nodes(z, source.name, journal)
+    blank = np.isnan(z)
     if blank.all():
         raise InputError(
             message("io.grid-without-elevation", "No cell of the grid has an elevation"),

@@ -13,7 +13,8 @@ from geofit.io.columns import HORIZON_COLUMNS
 from geofit.io.guess import locate
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
-from geofit.io.rows import NO_DATA, Rows, is_blank, read_rows
+from geofit.io.no_data import is_no_data
+from geofit.io.rows import Rows, is_blank, read_rows
 from geofit.io.source import Source
 from geofit.io.tables import parse_numbers
 from geofit.io.units import length_factors
@@ -128,7 +129,7 @@ def _values(rows: Rows, j: int, depths: bool) -> Floats:
     cells, header = rows.table.columns[j], rows.table.header[j]
     values, bad = parse_numbers(cells, rows.table.decimal)
     wrong = [i for i in bad.tolist() if not is_blank(cells[i])]
-    values[np.isin(values, NO_DATA)] = np.nan
+    values[is_no_data(values)] = np.nan
     reasons = dict.fromkeys(wrong, message("io.cell-not-finite", "The cell is not a finite number; it gives no pick"))
     if depths:
         above = np.flatnonzero(values < 0).tolist()

@@ -53,7 +53,7 @@ class HorizonNames:
             )
         if self.names and not set(self.names).issuperset(named.table):
             texts = [named.table[code] for code in named.codes.tolist()]
-            rows.require_known(role, texts, self.names, "site file's [[horizon]] list")
+            named = Labels.of(rows.require_known(role, texts, self.names, "site file's [[horizon]] list"))
         return named
 
     @staticmethod

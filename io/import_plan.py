@@ -40,11 +40,12 @@ class TablePart:
 
 @dataclass
 class ImportPlan:
-    """The parts that are used by kind, and what was set aside."""
+    """The parts that are used by kind, what was set aside, and the files that were looked at."""
 
     parts: dict[str, list[TablePart]] = field(default_factory=dict)
     issues: list[ImportIssue] = field(default_factory=list)
     counts: list[TableCount] = field(default_factory=list)
+    files: set[Path] = field(default_factory=set)
 
     def of(self, kind: str) -> list[TablePart]:
         """Return the tables of a kind, in the order of the files."""
@@ -91,6 +92,12 @@ def look_at(
             message("io.rename-file", "Rename the file."),
         )
         return
+    absolute = Path(os.path.abspath(path))
+    if absolute in plan.files:
+        reason = message("io.file-read-once", "The file is given twice; it is read once")
+        plan.issues.append(ImportIssue(name, 0, "", "", "note", reason))
+        return
+    plan.files.add(absolute)
     source = Source(path=path, name=name, target=crs or None)
     try:
         previews = preview_file(source, mappings)
@@ -106,14 +113,12 @@ def look_at(
             mapping = replace(own, file=name, table=preview.table, columns={**mapping.columns, **own.columns})
         mapping = replace(mapping, unit=mapping.unit or unit)
         part = TablePart(name, preview, mapping, part_source)
-        if preview.kind == "skip":
-            plan.set_aside(
-                part_source.name,
-                preview.read,
-                message("io.table-left-out", "The mapping leaves this table out"),
-                EMPTY,
-                "note",
-            )
+        if preview.kind == "skip" and preview.issues:
+            (issue,) = preview.issues
+            plan.set_aside(part_source.name, preview.read, issue.reason, issue.remedy, issue.severity)
+        elif preview.kind == "skip":
+            reason = message("io.table-left-out", "The mapping leaves this table out")
+            plan.set_aside(part_source.name, preview.read, reason, EMPTY, "note")
         elif preview.kind == "" and not preview.header:
             (issue,) = preview.issues
             plan.set_aside(
@@ -161,15 +166,15 @@ def _not_recognised(preview: TablePreview) -> tuple[Message, Message]:
     if best >= 0.5 and not missing:
         return message(
             "io.file-without-numbers",
-            "The file is not used: it resembles a {kind} table, but too few of its cells are numbers with the decimal "
-            "mark '{mark}'",
+            "The file is not used: it is most like the kind '{kind}', but too few of its cells are numbers with the "
+            "decimal mark '{mark}'",
             kind=nearest,
             mark=preview.decimal,
         ), message("io.give-numbers-or-decimal", "Give plain numbers, or state decimal in a mapping file (--mapping).")
     if best >= 0.5:
         return message(
             "io.file-without-columns",
-            "The file is not used: it resembles a {kind} table, but lacks {names}",
+            "The file is not used: it is most like the kind '{kind}', but lacks {names}",
             kind=nearest,
             names=tuple(message("io.quoted-name", "'{name}'", name=Untranslated(role)) for role in missing),
         ), _REMEDY

@@ -26,13 +26,15 @@ class Journal:
     """One list for all files of one reading; handed down to every reader, which appends to it.
 
     ``found`` holds what was listed; of findings that are alike but for their row the first :data:`MOST`.
-    ``refused`` gives file and row of each collar that was not used, by the name of its hole.
+    ``refused`` gives file and row of each collar that was not used, by the name of its hole; ``systems`` the
+    coordinate systems that files state, each with the first such file.
     """
 
     found: list[ImportIssue] = field(default_factory=list)
     counts: list[TableCount] = field(default_factory=list)
     inputs: dict[str, str] = field(default_factory=dict)
     refused: dict[str, tuple[Message | str, ...]] = field(default_factory=dict)
+    systems: dict[str, str] = field(default_factory=dict)
     _alike: dict[tuple[Severity, str, str, str], tuple[int, int, Message]] = field(default_factory=dict)
 
     def read(self, source: Source) -> bytes:

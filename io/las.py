@@ -6,6 +6,7 @@ import warnings
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.messages import message
@@ -25,15 +26,15 @@ _WELL = {
     "x": ("XCOORD", "X", "EAST", "XWELL", "UTMX", "EASTING"),
     "y": ("YCOORD", "Y", "NORTH", "YWELL", "UTMY", "NORTHING"),
     "z": ("EREF", "EKB", "KB", "ELEV", "EGL", "GL", "EDF", "ELZ"),
-    "depth": ("STOP",),
 }
 
 
 def read_log(source: Source, journal: Journal) -> Table:
     """Read "WELL" (one row: hole, x, y, z, depth) or "CURVES" (a row each sample: hole, from, to, curves).
 
-    A sample reaches from its depth to that of the next one; a curve of codes (facies, lithology) thus makes
-    intervals. z is the elevation of the depth reference.
+    A sample reaches from its depth to that of the next deeper one, whether the log runs down or up; a curve of codes
+    (facies, lithology) thus makes intervals, and the hole is as deep as its samples reach. z is the elevation of the
+    depth reference.
 
     Raises
     ------
@@ -42,28 +43,25 @@ def read_log(source: Source, journal: Journal) -> Table:
     """
     log, line = _open(source, journal)
     hole = _head(log, _WELL["hole"])[0] or source.path.stem
+    top, base = _reach(np.asarray(log.index, dtype=np.float64))
+    unit = str(log.curves[0].unit)
     if source.table == "WELL":
         found = {role: _head(log, names) for role, names in _WELL.items()}
-        cells = [hole, *(found[role][0] for role in ("x", "y", "z", "depth"))]
-        units = ["", *(found[role][1] for role in ("x", "y", "z", "depth"))]
-        return table_of(source, journal, list(_WELL), [(1, cells)], units=units)
+        deepest = float(base[np.isfinite(base)].max(initial=-np.inf))
+        cells = [hole, *(found[role][0] for role in ("x", "y", "z")), number_text(deepest) if deepest > 0 else ""]
+        units = ["", *(found[role][1] for role in ("x", "y", "z")), unit]
+        return table_of(source, journal, [*_WELL, "depth"], [(1, cells)], units=units)
     if source.table != "CURVES":
         raise InputError(
             message("io.las-table-unknown", "A LAS file has no table '{table}'", table=source.table),
             message("io.name-las-table", "Name WELL or CURVES."),
             file=source.name,
         )
-    depth = np.asarray(log.index, dtype=np.float64)
-    step = float(depth[-1] - depth[-2]) if len(depth) > 1 else 0.0
-    ends = np.append(depth[1:], depth[-1] + step)
-    upward = step < 0
-    top, base = (ends, depth) if upward else (depth, ends)
     curves = list(log.curves)[1:]
     header = ["hole", "from", "to", *(str(curve.mnemonic) for curve in curves)]
-    unit = str(log.curves[0].unit)
     rows = [
         (line + i, [hole, number_text(top[i]), number_text(base[i]), *(_cell(curve.data[i]) for curve in curves)])
-        for i in range(len(depth))
+        for i in range(len(top))
     ]
     journal.add(
         "note",
@@ -71,11 +69,19 @@ def read_log(source: Source, journal: Journal) -> Table:
         message(
             "io.samples-as-intervals",
             "{count} samples; each is an interval that reaches to the next sample",
-            count=len(depth),
+            count=len(top),
         ),
         message("io.give-interval-table", "Give an interval table where the log has one."),
     )
     return table_of(source, journal, header, rows, units=["", unit, unit, *(str(c.unit) for c in curves)])
+
+
+def _reach(depth: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return where each sample begins and ends, that is, where the next deeper one begins."""
+    down = depth if depth[-1] >= depth[0] else depth[::-1]
+    step = down[-1] - down[-2] if len(down) > 1 else 0.0
+    ends = np.append(down[1:], down[-1] + step)
+    return depth, ends if down is depth else ends[::-1]
 
 
 def _cell(value: Any) -> str:

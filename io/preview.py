@@ -8,14 +8,15 @@ from pathlib import Path
 
 from geofit.data.errors import GeofitError, InputError
 from geofit.data.given import arguments_checked
+from geofit.data.messages import message
 from geofit.data.site import ImportIssue
 from geofit.io.columns import HORIZON_COLUMNS, SCHEMAS, SECTIONS, Schema
-from geofit.io.formats import TABLE_FORMATS, USUAL_TABLES, read_any_table, table_names
+from geofit.io.formats import TABLE_FORMATS, USUAL_TABLES, hidden_tables, read_any_table, table_names
 from geofit.io.guess import USABLE, RoleGuess, guess_roles, sample_of
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping, require_known
 from geofit.io.source import Source, as_source
-from geofit.io.tables import Table
+from geofit.io.tables import Table, parse_numbers
 
 __all__ = ["GROUNDS", "TablePreview", "preview_file", "preview_table"]
 
@@ -147,7 +148,7 @@ def preview_file(path: str | Path | Source, mappings: Sequence[ColumnMapping] = 
         return tuple(_fixed(replace(source, table=table, name=source.name), kind, points) for kind, table in parts)
     previews: list[TablePreview] = []
     usual = {name: kind for kind, names in _usual(ending).items() for name in names}
-    names = table_names(source)
+    names, hidden = table_names(source), hidden_tables(source)
     for name in names:
         if usual and name not in usual:
             continue
@@ -156,6 +157,8 @@ def preview_file(path: str | Path | Source, mappings: Sequence[ColumnMapping] = 
         try:
             if own:
                 previews += [preview_table(mapping.fill(part), mapping.kind) for mapping in own]
+            elif name in hidden:
+                previews.append(_left_out(preview_table(part), part))
             else:
                 previews.append(preview_table(part, usual.get(name)))
         except InputError as error:
@@ -241,6 +244,20 @@ def _unreadable(source: Source, error: InputError) -> TablePreview:
     return replace(_fixed(source, ""), kinds={}, confidence=0.0, issues=(issue,))
 
 
+def _left_out(preview: TablePreview, source: Source) -> TablePreview:
+    """Return the preview of a hidden table, which is not used: it is often an earlier state of another one."""
+    issue = ImportIssue(
+        source.name,
+        0,
+        "",
+        "",
+        "warning",
+        message("io.sheet-hidden", "The sheet is hidden and is not used"),
+        message("io.show-sheet", "If it is needed, show it, or state its kind in a mapping file (--mapping)."),
+    )
+    return replace(preview, kind="skip", confidence=1.0, roles=(), missing=(), issues=(issue,))
+
+
 def _fixed(source: Source, kind: str, read: int = 0) -> TablePreview:
     return TablePreview(source.path.name, source.table, kind, 1.0, {kind: 1.0}, (), (), read=read)
 
@@ -293,13 +310,15 @@ def _merit(table: Table, schema: Schema, guesses: Mapping[str, RoleGuess]) -> fl
             merit *= 0.85 if _once(table, guesses, "hole") < 0.95 else 0.4
         case "picks":
             merit *= 0.9 if "horizon" in guesses else 0.75
+            # Lines of a map that has no elevations are exported at 0.
+            merit *= 0.4 if "horizon" in guesses and _flat(table, guesses["z"]) else 1.0
         case "orientations":
             attitude = "dip" in guesses and {"azimuth", "strike"} & set(guesses)
             merit *= 1.05 if attitude or "nx" in guesses else 0.0
             merit *= 0.5 if "hole" in guess_roles(table, SCHEMAS["collar"], Source(path=Path(table.name))) else 1.0
         case "traces" | "section lines" | "boundary":
             others = guess_roles(table, SCHEMAS["picks"], Source(path=Path(table.name)))
-            merit *= 0.5 if "z" in others else 0.95
+            merit *= 0.5 if "z" in others and not _flat(table, others["z"]) else 0.95
             if schema.name == "boundary":
                 merit *= 0.9 if len(table.header) <= 3 and "horizon" not in others else 0.4
                 merit *= 0.5 if {"hole", "section"} & set(others) else 1.0
@@ -312,6 +331,12 @@ def _merit(table: Table, schema: Schema, guesses: Mapping[str, RoleGuess]) -> fl
             if schema.name == "section" and "section" in guess_roles(table, SECTIONS, Source(path=Path(table.name))):
                 merit *= 0.5
     return min(merit + 0.02 * extra * (merit > 0), 1.0)
+
+
+def _flat(table: Table, guess: RoleGuess) -> bool:
+    """Whether a column is 0 in all rows that are looked at."""
+    cells = [table.columns[guess.index][i] for i in sample_of(table)]
+    return len(cells) > 1 and bool((parse_numbers(cells, table.decimal)[0] == 0).all())
 
 
 def _once(table: Table, guesses: Mapping[str, RoleGuess], role: str) -> float:

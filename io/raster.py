@@ -9,11 +9,12 @@ import numpy as np
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.data.site import Ground
-from geofit.io.crs import is_code
+from geofit.io.crs import is_code, list_system
 from geofit.io.extra import need
 from geofit.io.journal import Journal
+from geofit.io.no_data import blank_nodes
 from geofit.io.source import Source
-from geofit.io.units import grid_unit
+from geofit.io.units import map_units
 
 __all__ = ["read_raster"]
 
@@ -35,6 +36,7 @@ def read_raster(source: Source, journal: Journal) -> Ground:
             with rasterio.open(source.path, driver="GTiff") as raster:
                 band = raster.read(1, masked=True)
                 place, crs, bands = raster.transform, raster.crs, raster.count
+                scale, offset, height = raster.scales[0], raster.offsets[0], raster.units[0] or ""
     except (rasterio.errors.RasterioError, OSError, ValueError, MemoryError) as error:
         raise InputError(
             message("io.raster-unreadable", "The raster cannot be read: {error}", error=error),
@@ -58,6 +60,19 @@ def read_raster(source: Source, journal: Journal) -> Ground:
         )
     z = np.ma.filled(np.ma.asarray(band, dtype=np.float64), np.nan)[::-1].copy()
     z[~np.isfinite(z)] = np.nan
+    blank_nodes(z, source.name, journal)
+    if (scale, offset) != (1.0, 0.0):
+        z = scale * z + offset
+        journal.add(
+            "note",
+            source.name,
+            message(
+                "io.raster-scaled",
+                "The raster states a scale of {scale:.10g} and an offset of {offset:.10g}; they are applied",
+                scale=scale,
+                offset=offset,
+            ),
+        )
     if np.isnan(z).all():
         raise InputError(
             message("io.raster-without-elevation", "No cell of the raster has an elevation"),
@@ -87,10 +102,12 @@ def read_raster(source: Source, journal: Journal) -> Ground:
         )
     rows, columns = z.shape
     journal.count(source.name, rows, 0)
-    scale = grid_unit(source, journal)
+    plan, up = map_units(source, str(crs or ""), journal, height)
     x = place.c + place.a * (np.arange(columns) + 0.5)
     y = place.f + place.e * (np.arange(rows)[::-1] + 0.5)
-    return Ground(scale * x, scale * y, scale * z)
+    if crs is not None and not source.target:
+        list_system(str(crs), plan * x, plan * y, source.name, journal)
+    return Ground(plan * x, plan * y, up * z)
 
 
 def _check_crs(source: Source, crs: object, journal: Journal) -> None:

@@ -17,21 +17,20 @@ from geofit.data.labels import Labels
 from geofit.data.messages import EMPTY, Message, Untranslated, message, plural_message
 from geofit.io.big_columns import BigColumn
 from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
-from geofit.io.crs import WGS84, is_code, project_places, refuse_degrees
+from geofit.io.crs import WGS84, is_code, list_system, project_places, refuse_degrees
 from geofit.io.formats import read_any_table
 from geofit.io.guess import WORDS, find_columns
 from geofit.io.journal import Journal, Severity
+from geofit.io.no_data import is_no_data
 from geofit.io.source import Source, as_source
 from geofit.io.tables import Table, parse_numbers
 from geofit.io.units import ANGLES, DEGREES, LENGTHS, METRES, angle_factors, length_factors, with_unit
 
-__all__ = ["NO_DATA", "Rows", "is_blank", "name_key", "read_rows"]
+__all__ = ["Rows", "is_blank", "name_key", "read_rows"]
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-#: Elevations that programs write where there is none.
-NO_DATA = (-9999.0, -99999.0, -999.25, -999999.0, 1e30, 1e31, 1.70141e38)
 #: Marks for a missing number, in lower case.
 _NO_NUMBER = frozenset({
     "-", "--", "–", "—", "/", "?", "n/a", "n.a.", "na", "nan", "n.d.", "nd", "nil", "none", "null", "unknown",
@@ -131,10 +130,10 @@ class Rows:
             elif required or not is_blank(cells[i]):
                 self.reject(i, role, wrong, remedy)
         if no_data and not required:
-            values[np.isin(values, NO_DATA)] = np.nan
+            values[is_no_data(values)] = np.nan
         elif no_data:
             unknown = message("io.cell-marks-no-data", "The {role} is a mark for 'no data'", role=role)
-            for i in np.flatnonzero(np.isin(values, NO_DATA)).tolist():
+            for i in np.flatnonzero(is_no_data(values)).tolist():
                 self.reject(
                     i, role, unknown, message("io.complete-cell-or-remove-row", "Complete the cell or remove the row.")
                 )
@@ -162,6 +161,7 @@ class Rows:
         crs, target = self.source.crs or _degrees(self.table, self.columns), self.source.target
         if target is None and crs is not None and is_code(crs):
             refuse_degrees(crs, self.file)
+            list_system(crs, x, y, self.file, self.journal)
         if not (is_code(crs) and is_code(target)) or crs is None or target is None:
             return x, y
         metres = "x" in self.factors or "y" in self.factors

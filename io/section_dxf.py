@@ -13,6 +13,7 @@ from geofit.io.dxf import EXPLODE, LINES, on_layers, open_drawing, problem
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.source import Source
+from geofit.io.units import grid_unit
 
 __all__ = ["DrawnLines", "read_drawing"]
 
@@ -21,15 +22,16 @@ __all__ = ["DrawnLines", "read_drawing"]
 class DrawnLines:
     """Vertices of the horizon lines in drawing order.
 
-    ``xyz`` (n, 3) in drawing units, z nan where the drawing is flat; ``horizon`` the name of each, ``number``
-    its running number among all points of the drawing, from 1; ``listed`` counts what stands on other layers
-    or cannot be used.
+    ``xyz`` (n, 3) in metres of the stated unit, of which one is ``unit`` metres, z nan where the drawing is flat;
+    ``horizon`` the name of each, ``number`` its running number among all points of the drawing, from 1; ``listed``
+    counts what is on other layers or cannot be used.
     """
 
     xyz: NDArray[np.float64]
     horizon: list[str]
     number: NDArray[np.int64]
     listed: int
+    unit: float
 
     @property
     def uv(self) -> NDArray[np.float64]:
@@ -114,4 +116,6 @@ def read_drawing(
             xyz.append(vertex)
             names.append(horizon)
             numbers.append(number)
-    return DrawnLines(np.array(xyz, dtype=np.float64).reshape(-1, 3), names, np.array(numbers, dtype=np.int64), listed)
+    unit = grid_unit(source, Journal())
+    places = np.array(xyz, dtype=np.float64).reshape(-1, 3)
+    return DrawnLines(places, names, np.array(numbers, dtype=np.int64), listed, unit)

@@ -20,6 +20,7 @@ from geofit.io.sections import Drawing, lift, off_line_reason
 from geofit.io.site_drawings import placed_levels, placed_sections, plan_lines
 from geofit.io.site_keys import Reader
 from geofit.io.source import Source
+from geofit.io.units import grid_unit
 
 __all__ = ["site_outlines"]
 
@@ -39,6 +40,7 @@ def site_outlines(source: Source, journal: Journal) -> list[tuple[str, Floats, s
     top = with_tables(journal.read(source), (), source.name)
     reader = Reader(source.path)
     label = reader.get(top, "site", dict, "the site file") or {}
+    reader.unit = reader.get(label, "unit", str, "[site]")
     if mapping := reader.get(label, "mapping", str, "[site]"):
         reader.mappings = load_mappings(source.path.parent / mapping)
     rings: list[tuple[str, Floats, str]] = []
@@ -75,7 +77,8 @@ def _is_drawing(source: Source) -> bool:
 
 def _closed(source: Source, drawing: Drawing, journal: Journal) -> list[tuple[str, Floats]]:
     lines = closed_lines(source, journal, scale_stated=drawing.scale != 1.0, with_open_lines=True)
-    return [(line.layer, drawing.metres(line.xyz[:, :2])) for line in lines]
+    unit = grid_unit(source, Journal())
+    return [(line.layer, drawing.metres(line.xyz[:, :2], (unit, unit))) for line in lines]
 
 
 def _leave(journal: Journal, source: Source, number: int, layer: str, reason: Message, remedy: Message) -> None:

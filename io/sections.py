@@ -40,9 +40,12 @@ class Drawing:
     scale: float = 1.0
     origin: tuple[float, float] = (0.0, 0.0)
 
-    def metres(self, uv: Floats) -> Floats:
-        """Return (n, 2) drawing coordinates as distance and elevation."""
-        return np.asarray((uv - np.array(self.origin)) / self.scale)
+    def metres(self, uv: Floats, unit: tuple[float, float] = (1.0, 1.0)) -> Floats:
+        """Return (n, 2) drawing coordinates as distance and elevation.
+
+        ``unit`` is the metres of one unit of each coordinate where ``uv`` was converted: the origin is not.
+        """
+        return np.asarray((uv - np.array(unit) * self.origin) / self.scale)
 
 
 def lift(line: Floats, distance: Floats, elevation: Floats) -> Floats:
@@ -61,7 +64,8 @@ def load_section(
         return _from_dxf(source, section, drawing, horizons, journal)
     rows = read_rows(source, SECTION, journal)
     horizon = horizons.of(rows)
-    uv = drawing.metres(np.column_stack([rows.numbers("distance"), rows.numbers("elevation", no_data=True)]))
+    uv = np.column_stack([rows.numbers("distance"), rows.numbers("elevation", no_data=True)])
+    uv = drawing.metres(uv, (rows.factors.get("distance", 1.0), rows.factors.get("elevation", 1.0)))
     for i in np.flatnonzero(_off_line(section, uv[:, 0]) & rows.ok).tolist():
         rows.reject(i, "distance", *_off_line_text(section, uv[i, 0]))
     rows.close()
@@ -185,7 +189,7 @@ def load_level(
     section = f"level {elevation:g}"
     if source.path.suffix.casefold() == ".dxf":
         drawn = read_drawing(source, horizons, journal, scale_stated=drawing.scale != 1.0)
-        xy = drawing.metres(drawn.uv)
+        xy = drawing.metres(drawn.uv, (drawn.unit, drawn.unit))
         journal.count(source.name, len(xy) + drawn.listed, drawn.listed)
         xyz, names = np.column_stack([xy, np.full(len(xy), elevation)]), np.array(drawn.horizon, dtype=np.str_)
         return {
@@ -196,7 +200,8 @@ def load_level(
         }
     rows = read_rows(source, Schema("traces", TRACES.required, {}), journal)
     horizon = horizons.of(rows)
-    x, y = drawing.metres(np.column_stack(rows.places())).T
+    unit = (rows.factors.get("x", 1.0), rows.factors.get("y", 1.0))
+    x, y = drawing.metres(np.column_stack(rows.places()), unit).T
     check_axes(rows, x, y, region)
     rows.close()
     xyz = np.column_stack([x, y, np.full(len(rows), elevation)])
@@ -207,7 +212,7 @@ def _from_dxf(
     source: Source, section: Section, drawing: Drawing, horizons: HorizonNames, journal: Journal
 ) -> dict[str, PointSet]:
     drawn = read_drawing(source, horizons, journal, scale_stated=drawing.scale != 1.0)
-    uv = drawing.metres(drawn.uv)
+    uv = drawing.metres(drawn.uv, (drawn.unit, drawn.unit))
     off = _off_line(section, uv[:, 0])
     for i in np.flatnonzero(off).tolist():
         reason, remedy = _off_line_text(section, uv[i, 0])

@@ -25,7 +25,7 @@ from geofit.io.boreholes import Boreholes, load_boreholes
 from geofit.io.boundary import load_boundary
 from geofit.io.contact_rules import ContactRule
 from geofit.io.contacts import load_rule
-from geofit.io.crs import is_code
+from geofit.io.crs import is_code, require_grid
 from geofit.io.desurvey import METHODS
 from geofit.io.grid import load_grid, load_ground
 from geofit.io.hints import nearest_name
@@ -36,6 +36,7 @@ from geofit.io.mapping import ColumnMapping, load_mappings
 from geofit.io.orientations import load_orientations
 from geofit.io.picks import load_picks
 from geofit.io.places import list_places
+from geofit.io.shared_holes import warn_of_shared_holes
 from geofit.io.site_drawings import gather, read_sections
 from geofit.io.site_keys import HORIZON, SETTINGS, TOP, Reader
 from geofit.io.site_relations import read_datum, read_relations
@@ -90,12 +91,24 @@ def read_site(path: str | Path, progress: Progress | None = None, *, added: Sequ
     Keys of the site file: ``docs/site_file.md``; formats of the tables: ``docs/formats_in.md``.
     """
     site = load_site(path, progress, added=added)
-    if not site.horizons:
-        raise Reader(Path(path)).fail(
-            message("io.site-without-horizon", "The site has no horizon"),
-            message("io.add-horizon-and-files", "Add a [[horizon]] table and files that contain its points."),
+    if site.horizons:
+        return site
+    reason = message("io.site-without-horizon", "The site has no horizon")
+    remedy = message("io.add-horizon-and-files", "Add a [[horizon]] table and files that contain its points.")
+    if refused := [issue for issue in site.issues if issue.severity == "error" and issue.row]:
+        reason = message(
+            "io.site-without-usable-row",
+            "The site has no horizon; entries of the files that are not used: {count}, the first is {file}, row {row}: "
+            "{reason}",
+            count=len(refused),
+            file=Untranslated(refused[0].file),
+            row=refused[0].row,
+            reason=refused[0].reason,
         )
-    return site
+        remedy = message("io.correct-listed", "Correct the listed entries.")
+    error = Reader(Path(path)).fail(reason, remedy)
+    error.issues = site.issues
+    raise error
 
 
 def load_site(path: str | Path, progress: Progress | None = None, *, added: Sequence[str] = ()) -> Site:
@@ -150,6 +163,7 @@ def _built(
     label = reader.get(top, "site", dict, "the site file") or {}
     reader.keys(label, ("name", "crs", "mapping", "order", "unit", "datum"), "[site]")
     crs = reader.get(label, "crs", str, "[site]") or ""
+    require_grid(crs, reader.file)
     reader.target = crs if is_code(crs) else None
     if unit := reader.get(label, "unit", str, "[site]"):
         metres_of(unit, reader.file)
@@ -175,6 +189,7 @@ def _built(
     tell(progress, "read boreholes and adits", 0.1)
     gathered: dict[str, list[PointSet]] = {name: [] for name in names.names}
     boreholes = [_boreholes(reader, table, journal, region, ground) for table in reader.tables(top, "boreholes")]
+    warn_of_shared_holes(boreholes, journal)
     _gather_contacts(reader, gathered, boreholes, horizons, journal)
     adits = _adits(reader, top, names, journal, region, gathered)
     tell(progress, "read sections", 0.4)

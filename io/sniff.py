@@ -11,6 +11,7 @@ from itertools import zip_longest
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.io.parser_errors import parser_message
+from geofit.io.unit_names import is_unit
 
 __all__ = [
     "HEAD",
@@ -56,27 +57,6 @@ _MARKS = re.compile(rf"[+-]?(?:{_POINTED}|{_COMMAED}|[1-9]\d{{0,2}}([.,])\d{{3}}
 HEAD = 65_536
 #: Titles have at most this share of the usual cells; a header lies at most so many rows below the first of them.
 NARROW, TITLES = 0.6, 20
-_UNITS = {
-    "m",
-    "km",
-    "cm",
-    "mm",
-    "metre",
-    "metres",
-    "meter",
-    "meters",
-    "ft",
-    "feet",
-    "usft",
-    "gon",
-    "rad",
-    "deg",
-    "degree",
-    "degrees",
-    "°",
-    "米",
-    "度",
-}
 
 
 def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, str]:
@@ -264,9 +244,10 @@ def is_header(first: Sequence[str], following: Sequence[Sequence[str]]) -> bool:
 
 
 def is_units_row(cells: Sequence[str]) -> bool:
-    """Whether a row under the header holds nothing but units, such as "m", "[ft]" or "m a.s.l."."""
-    filled = [cell.strip().strip("[]()<>").casefold().split() for cell in cells if cell.strip()]
-    return bool(filled) and all(words and words[0] in _UNITS | {"-", "units"} for words in filled)
+    """Whether a row under the header holds units, such as "m", "[ft]" or "m a.s.l.", and hardly anything else."""
+    filled = [cell for cell in cells if cell.strip()]
+    units = sum(map(is_unit, filled))
+    return 2 * units > len(filled) and not any(map(is_number, filled))
 
 
 def find_header(rows: Sequence[Sequence[str]]) -> tuple[int, int]:

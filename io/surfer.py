@@ -11,6 +11,7 @@ from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.data.site import Ground
 from geofit.io.journal import Journal
+from geofit.io.no_data import blank_nodes
 from geofit.io.source import Source
 from geofit.io.units import grid_unit
 
@@ -74,6 +75,7 @@ def read_surfer(data: bytes, source: Source, journal: Journal) -> Ground:
             file=source.name,
         )
     z = np.where(np.isfinite(z) & (z < BLANK) & (z != blank), z, np.nan)
+    blank_nodes(z, source.name, journal)
     if np.isnan(z).all():
         raise InputError(
             message("io.grid-without-elevation", "No cell of the grid has an elevation"),

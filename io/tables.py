@@ -251,9 +251,10 @@ def _columns(
         below = i + taken
         if kinds is not None:
             kinds[i + 1 : below] = TAKEN
-        if any(cell.strip() for cell in cells[width:]):
+        # Blanks leave no trace of an empty cell: those behind it would move to the left.
+        if any(cell.strip() for cell in cells[width:]) or (sep == " " and len(cells) < width):
             malformed += 1
-            _list_malformed(name, i + 1, line, len(cells), width, journal)
+            _list_malformed(name, i + 1, line, len(cells), width, sep, journal)
         else:
             odd[i] = (cells + [""] * width)[:width]
     if kinds is not None:
@@ -280,12 +281,14 @@ def _columns(
     return tuple(map(tuple, columns)), numbers, malformed
 
 
-def _list_malformed(name: str, number: int, line: str, count: int, width: int, journal: Journal) -> None:
+def _list_malformed(name: str, number: int, line: str, count: int, width: int, sep: str, journal: Journal) -> None:
     journal.add(
         "error",
         name,
         message("io.row-cells-differ", "Cells of the row: {count}, of the header: {width}", count=count, width=width),
-        message(
+        message("io.fill-or-separate-cells", "Write a mark such as - into empty cells, or separate cells by commas.")
+        if sep == " "
+        else message(
             "io.quote-cells",
             "Quote cells that contain the separator, or use a separator other than the decimal mark.",
         ),

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.site import Ground
 from geofit.io.axes import Region, check_axes, place_in
 from geofit.io.columns import TRACES
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
-from geofit.io.rows import read_rows
+from geofit.io.rows import Rows, read_rows
 from geofit.io.section_dxf import read_drawing
 from geofit.io.source import Source
+from geofit.io.vector import RING
 
 __all__ = ["load_traces"]
 
@@ -45,15 +47,29 @@ def load_traces(
     x, y = rows.places()
     z = rows.numbers("z", required=False, no_data=True)
     check_axes(rows, x, y, region)
+    flat = _flat(rows, z)
+    z[flat] = np.nan
     blank = np.flatnonzero(np.isnan(z) & rows.ok)
     if blank.size and ground is None:
         raise _undraped(blank.size, source, int(rows.line[blank[0]]))
+    if flat.any():
+        journal.add("note", rows.file, _draped(int(flat.sum())))
     if blank.size and ground is not None:
         z[blank] = ground.elevation(x[blank], y[blank])
         for i in blank[np.isnan(z[blank])].tolist():
             rows.reject(i, "x", *OFF_GRID)
     rows.close()
     return horizons.split(rows, horizon, np.column_stack([x, y, z]), kind="outcrop")
+
+
+def _flat(rows: Rows, z: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return the rows of lines that lie at 0 as a whole, as maps without elevations are exported; a table is one."""
+    lines = np.array(rows.table.columns[rows.table.header.index(RING)] if RING in rows.table.header else [""] * len(z))
+    return np.asarray((z == 0) & ~np.isin(lines, lines[np.isfinite(z) & (z != 0)]))
+
+
+def _draped(count: int) -> Message:
+    return message("io.points-draped", "Points at elevation 0 that are draped on the ground: {count}", count=count)
 
 
 def _from_dxf(
@@ -82,15 +98,7 @@ def _from_dxf(
     if blank.size and ground is None:
         raise _undraped(blank.size, source, int(drawn.number[blank[0]]))
     if blank.size and ground is not None:
-        journal.add(
-            "note",
-            source.name,
-            message(
-                "io.points-draped",
-                "Points at elevation 0 that are draped on the ground: {count}",
-                count=blank.size,
-            ),
-        )
+        journal.add("note", source.name, _draped(blank.size))
         xyz[blank, 2] = ground.elevation(xyz[blank, 0], xyz[blank, 1])
     for i in np.flatnonzero(np.isnan(xyz[:, 2])).tolist():
         used[i] = False

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Untranslated, message
+from geofit.data.messages import EMPTY, Untranslated, message
 from geofit.io.columns import plain_name
+from geofit.io.crs import axis_units
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table, parse_numbers
+from geofit.io.unit_names import ANGLE_UNITS, DEGREE_WORDS, UNITS, is_unit, unit_marked
 
 __all__ = [
     "ANGLES",
@@ -22,6 +24,7 @@ __all__ = [
     "grid_unit",
     "length_factors",
     "list_conversion",
+    "map_units",
     "metres_of",
     "unit_marked",
     "with_unit",
@@ -30,17 +33,6 @@ __all__ = [
 #: Metres of one unit. The US survey foot differs by 2 in a million: 1.4 m at a state-plane northing of 2.3e6 ft.
 METRES = {"m": 1.0, "ft": 0.3048, "ft-us": 1200.0 / 3937.0, "km": 1000.0, "cm": 0.01, "mm": 0.001}
 
-#: What a unit is called, without case, blanks and marks.
-_WORDS = {
-    "m": "m metre metres meter meters 米",
-    "ft": "ft feet foot f ift intft internationalft internationalfeet internationalfoot 英尺 国际英尺",
-    "ft-us": "ftus usft usfeet usfoot ft(us) ussft sft surveyft surveyfeet surveyfoot ussurveyft ussurveyfeet "
-    "ussurveyfoot 美制测量英尺 测量英尺",
-    "km": "km kilometre kilometres kilometer kilometers 千米 公里",
-    "cm": "cm centimetre centimetres centimeter centimeters 厘米",
-    "mm": "mm millimetre millimetres millimeter millimeters 毫米",
-}
-_UNITS = {word: unit for unit, words in _WORDS.items() for word in words.split()}
 #: What conversions call a unit.
 _NAMES = {"ft": "feet", "ft-us": "US survey feet"}
 
@@ -51,28 +43,7 @@ LENGTHS = frozenset(
 #: Roles that are angles, and what their unit is called here.
 ANGLES, DEGREES = frozenset({"azimuth", "dip", "strike"}), "deg"
 
-#: Degrees of one unit of the angles that a header marks; "grad" is none: a degree in German, a gon in English.
-_ANGLE_UNITS = dict.fromkeys(("gon", "gons", "gradian", "gradians", "百分度"), 0.9)
-_ANGLE_UNITS |= dict.fromkeys(("rad", "radian", "radians", "弧度"), 180.0 / math.pi)
-
 _WITH_UNIT = re.compile(r"(.*\d[.,]?)\s*([^\W\d_].*|°)")
-_DEGREE_WORDS = {"°", "度", "deg", "degree", "degrees"}
-
-
-def unit_marked(mark: str) -> str | None:
-    """Return the unit that a mark names, alone or with words behind it ("ft bgl", "US survey feet"); None if none.
-
-    Examples
-    --------
-    >>> [unit_marked(mark) for mark in ("Feet", "ft. AMSL", "US Survey ft", "m", "deg")]
-    ['ft', 'ft', 'ft-us', 'm', None]
-    """
-    words = mark.casefold().strip().strip("[]()<>").replace(",", " ").split()
-    for count in range(len(words), 0, -1):
-        found = _UNITS.get(re.sub(r"[\s_.\-]", "", "".join(words[:count])))
-        if found is not None:
-            return found
-    return None
 
 
 def with_unit(cell: str, decimal: str) -> tuple[float, str] | None:
@@ -87,7 +58,7 @@ def with_unit(cell: str, decimal: str) -> tuple[float, str] | None:
     if found is None:
         return None
     mark = found.group(2).casefold().strip(" .")
-    unit = DEGREES if mark in _DEGREE_WORDS else _UNITS.get(mark)
+    unit = DEGREES if mark in DEGREE_WORDS else UNITS.get(mark)
     values, bad = parse_numbers((found.group(1),), decimal)
     return None if unit is None or len(bad) else (float(values[0]), unit)
 
@@ -108,37 +79,104 @@ def metres_of(unit: str, file: str | None = None) -> float:
 def length_factors(table: Table, columns: Mapping[str, int], source: Source, journal: Journal) -> dict[str, float]:
     """Return the metres of one unit of each length column that is not in metres; every conversion is listed.
 
-    What the source states holds for all of them; else the mark in the header or the units row, else the site's unit.
+    What the source states holds for all of them; else the mark in the header or the units row, else that of the
+    coordinate system, else the site's unit.
     """
     stated = None if source.unit is None else metres_of(source.unit, source.name)
     usual = None if source.usual_unit is None else metres_of(source.usual_unit, source.name)
+    own = _of_crs(source) if stated is None else {}
     factors: dict[str, float] = {}
+    by_crs: list[str] = []
     for role, j in columns.items():
         if role not in LENGTHS:
             continue
-        mark = plain_name(table.header[j])[1] or (table.units[j] if j < len(table.units) else "")
-        unit = unit_marked(mark)
+        row = table.units[j] if j < len(table.units) else ""
+        unit = unit_marked(plain_name(table.header[j])[1]) or unit_marked(row)
+        if stated is None and unit is None and row.strip() and not is_unit(row):
+            _list_unknown(table, j, role, row, journal)
         if stated is None and unit is not None:
             factors[role] = METRES[unit]
             if unit != "m":
                 _list_mark(table, j, role, unit, journal)
+        elif role in own:
+            factors[role] = own[role]
+            by_crs.append(role)
         elif stated is not None or usual is not None:
             factors[role] = (stated if stated is not None else usual) or 1.0
+    if by_crs:
+        _list_crs(source, factors, by_crs, journal, doubtful="z" in columns and "z" not in factors)
     factors = {role: factor for role, factor in factors.items() if factor != 1.0}
     given = source.unit or source.usual_unit
-    if given is not None and (roles := [role for role, factor in factors.items() if factor in (stated, usual)]):
+    roles = [role for role, factor in factors.items() if factor in (stated, usual) and role not in by_crs]
+    if given is not None and roles:
         list_conversion(given, tuple(roles), source.name, journal)
     return factors
+
+
+def map_units(source: Source, crs: str, journal: Journal, height: str = "") -> tuple[float, float]:
+    """Return the metres of one unit in plan and of one of elevation of a map or raster that states its system.
+
+    What the source states holds; else the unit of the system, and ``height``, a mark of the elevations; else the
+    site's unit. Conversions are listed.
+    """
+    own = _of_crs(replace(source, crs=crs)) if source.unit is None else {}
+    if own and (up := unit_marked(height)) is not None:
+        own["z"] = METRES[up]
+    if not own:
+        unit = grid_unit(source, journal)
+        return unit, unit
+    usual = 1.0 if source.usual_unit is None else metres_of(source.usual_unit, source.name)
+    factors = {"z": usual, **own}
+    doubtful = "z" not in own and source.usual_unit is None
+    _list_crs(replace(source, crs=crs), factors, list(own), journal, doubtful=doubtful)
+    return factors["x"], factors["z"]
+
+
+def _of_crs(source: Source) -> dict[str, float]:
+    """Return the metres of one unit of easting, northing and, where it has one, elevation of the file's system."""
+    axes = axis_units(source.crs)
+    if not axes:
+        return {}
+    own = dict(zip(("x", "y", "z"), axes, strict=False))
+    return own | {f"{axis}{end}": own[axis] for axis in "xy" for end in "01"}
+
+
+def _list_crs(
+    source: Source, factors: Mapping[str, float], roles: Sequence[str], journal: Journal, *, doubtful: bool
+) -> None:
+    """List what is converted because the coordinate system counts in another unit; ``doubtful`` are elevations."""
+    converted = [role for role in roles if role in ("x", "y", "z") and factors[role] != 1.0]
+    if not converted:
+        return
+    journal.add(
+        "warning" if doubtful else "note",
+        source.name,
+        message(
+            "io.crs-unit-converted",
+            "The coordinate system {crs} counts in units of {metres:.10g} m; converted to metres: {roles}",
+            crs=str(source.crs)[:60],
+            metres=factors[converted[0]],
+            roles=tuple(converted),
+        ),
+        message(
+            "io.state-unit-of-elevations",
+            'Elevations are read as metres. If they are in that unit too, state it: unit = "ft-us".',
+        )
+        if doubtful
+        else EMPTY,
+    )
 
 
 def angle_factors(table: Table, columns: Mapping[str, int], journal: Journal) -> dict[str, float]:
     """Return the degrees of one unit of each column of angles whose header marks gon or radians; each is listed."""
     factors: dict[str, float] = {}
     for role in sorted(ANGLES & columns.keys()):
-        header = table.header[columns[role]]
-        mark = plain_name(header)[1].casefold()
-        if mark in _ANGLE_UNITS:
-            factors[role] = _ANGLE_UNITS[mark]
+        j = columns[role]
+        header = table.header[j]
+        marks = (plain_name(header)[1], table.units[j].strip("[]()<> ") if j < len(table.units) else "")
+        mark = next((mark.casefold() for mark in marks if mark.casefold() in ANGLE_UNITS), "")
+        if mark:
+            factors[role] = ANGLE_UNITS[mark]
             journal.add(
                 "note",
                 table.name,
@@ -171,6 +209,25 @@ def _list_mark(table: Table, j: int, role: str, unit: str, journal: Journal) -> 
     )
 
 
+def _list_unknown(table: Table, j: int, role: str, mark: str, journal: Journal) -> None:
+    journal.add(
+        "warning",
+        table.name,
+        message(
+            "io.unit-of-column-unknown",
+            "The row of units has '{mark}' for the {role}, which is not a known unit of length",
+            mark=Untranslated(mark),
+            role=role,
+        ),
+        message(
+            "io.state-known-unit",
+            "State the unit in the file or site file; known units are {names}.",
+            names=", ".join(METRES),
+        ),
+        column=table.header[j],
+    )
+
+
 def list_conversion(unit: str, roles: tuple[str, ...], file: str, journal: Journal) -> None:
     """List that lengths of a file were converted, for the record of what was done to the data."""
     known = unit_marked(unit) or "m"
@@ -188,7 +245,7 @@ def list_conversion(unit: str, roles: tuple[str, ...], file: str, journal: Journ
 
 
 def grid_unit(source: Source, journal: Journal) -> float:
-    """Return the metres of the unit that the user states; a grid does not say its own."""
+    """Return the metres of the unit that the user states of a grid or drawing; the conversion is listed."""
     unit = source.unit or source.usual_unit
     if unit is None:
         return 1.0

@@ -10,7 +10,7 @@ import numpy as np
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.io.cells import number_text, table_of
-from geofit.io.crs import refuse_degrees
+from geofit.io.crs import WGS84, refuse_degrees
 from geofit.io.extra import need
 from geofit.io.journal import Journal
 from geofit.io.source import Source
@@ -61,6 +61,17 @@ def read_features(source: Source, journal: Journal) -> Table:
     except (OSError, ValueError, RuntimeError, UnicodeError) as error:
         raise _damaged(source, error) from None
     crs = str(meta.get("crs") or "")
+    if crs == WGS84 and data.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{") and not _may_be_degrees(shapes):
+        crs = ""
+        journal.add(
+            "note",
+            source.name,
+            message(
+                "io.geojson-not-degrees",
+                "GeoJSON is in longitude and latitude if it states no coordinate system, but these places cannot be; "
+                "they are taken as coordinates of the site",
+            ),
+        )
     if crs:
         journal.add(
             "note",
@@ -94,6 +105,14 @@ def read_features(source: Source, journal: Journal) -> Table:
     # An attribute that is called like a coordinate stays, under another name.
     header += [f"{name} (attribute)" if name.casefold() in {"x", "y", "z", RING} else name for name in attributes]
     return table_of(source, journal, header, rows, malformed=malformed, crs=crs)
+
+
+def _may_be_degrees(shapes: Any) -> bool:
+    """Whether all places may be longitude and latitude."""
+    import shapely
+
+    places = np.abs(shapely.get_coordinates(shapes))
+    return bool((places <= (360.0, 90.0)).all())
 
 
 def _recognise(source: Source, data: bytes) -> None:

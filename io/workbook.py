@@ -7,7 +7,8 @@ import io
 import warnings
 import zipfile
 import zlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 from xml.etree.ElementTree import ParseError
 
@@ -20,7 +21,7 @@ from geofit.io.sniff import find_header, is_header, is_units_row, joined_header
 from geofit.io.source import Source
 from geofit.io.tables import Table, list_second_header, list_title
 
-__all__ = ["read_sheet", "sheet_names"]
+__all__ = ["hidden_sheets", "read_sheet", "sheet_names"]
 
 _SAMPLE = 200
 #: Rows of the longest sheet that a spreadsheet program holds; cells that are read, also empty ones before filled ones;
@@ -31,6 +32,12 @@ MOST_ROWS, MOST_CELLS, MOST_BYTES = 1_048_576, 25_000_000, 2_000_000_000
 def sheet_names(source: Source) -> tuple[str, ...]:
     """Return the sheets that hold a filled row, in order."""
     return tuple(name for name, rows in _open(source, source.read()).items() if rows)
+
+
+def hidden_sheets(source: Source) -> tuple[str, ...]:
+    """Return the sheets that a spreadsheet program does not show."""
+    with _opened(source, source.read()) as book:
+        return tuple(str(sheet.title) for sheet in book.worksheets if sheet.sheet_state != "visible")
 
 
 def read_sheet(source: Source, journal: Journal) -> Table:
@@ -88,6 +95,17 @@ def read_sheet(source: Source, journal: Journal) -> Table:
 
 def _open(source: Source, data: bytes) -> dict[str, list[tuple[int, list[str]]]]:
     """Return the filled rows of each sheet: line and cells."""
+    with _opened(source, data) as book:
+        sheets = {}
+        for sheet in book.worksheets:
+            sheet.reset_dimensions()
+            sheets[str(sheet.title)] = _filled_rows(sheet.values, source.name)
+        return sheets
+
+
+@contextmanager
+def _opened(source: Source, data: bytes) -> Iterator[Any]:
+    """Open a workbook; what openpyxl raises on a damaged one becomes an error of ours."""
     openpyxl = need("openpyxl", "xlsx", message("io.reading-workbook", "Reading the workbook {file}", file=source.name))
     failures = (
         openpyxl.utils.exceptions.InvalidFileException,
@@ -108,12 +126,8 @@ def _open(source: Source, data: bytes) -> dict[str, list[tuple[int, list[str]]]]
             warnings.simplefilter("ignore")  # openpyxl warns of styles that it does not know
             _require_size(data, source.name)
             book = openpyxl.load_workbook(io.BytesIO(data), read_only=True, data_only=True)
-            sheets = {}
-            for sheet in book.worksheets:
-                sheet.reset_dimensions()
-                sheets[str(sheet.title)] = _filled_rows(sheet.values, source.name)
+            yield book
             book.close()
-            return sheets
     except failures as error:
         raise InputError(
             message(

@@ -41,6 +41,12 @@ def import_(
 
     written = (site, mapping_file_of(site))
     refuse_inputs((*written, issue_file_of(site)))
+    if site.suffix.casefold() != ".toml":
+        raise InputError(
+            message("cli.site-file-not-toml", "The name of a site file must end in .toml; others are read as tables"),
+            message("cli.name-site-toml", "Write --site {name}.", name=str(site / "site.toml")),
+            file=str(site),
+        )
     if not force:
         _refuse_existing(written)
     mappings = load_mappings(mapping) if mapping is not None else ()

@@ -79,6 +79,70 @@ def test_map_traces_are_draped_where_they_have_no_elevation(folder):
     assert any("draped on the ground: 7" in str(reason) for reason in reasons)
 
 
+@pytest.fixture
+def flat_map(folder):
+    """Lines of a map at 0, as a GIS writes a layer without elevations, and one with elevations of its own."""
+    pyogrio, shapely = pytest.importorskip("pyogrio"), pytest.importorskip("shapely")
+    lines = [[(500100, 3100100 + 300 * k, 0), (500900, 3100200 + 300 * k, 0)] for k in range(2)]
+    lines.append([(500100, 3100900, 0), (500900, 3100900, 12)])
+    shapes = np.array([shapely.LineString(line) for line in lines], dtype=object)
+    for name, count in (("mixed.gpkg", 3), ("flat.gpkg", 2)):
+        pyogrio.raw.write(
+            folder / name, shapely.to_wkb(shapes[:count], output_dimension=3), [np.array(["T2"] * count, dtype=object)],
+            ["horizon"], geometry_type="LineString Z", crs="EPSG:32650",
+        )  # fmt: skip
+    return np.array(lines, float)
+
+
+def test_traces_of_a_map_at_0_are_draped(folder, flat_map):
+    read, _ = site(folder, '[traces]\nfile = "mixed.gpkg"\n')
+    xyz = read.horizons["T2"].xyz
+    np.testing.assert_allclose(xyz[:4, 2], ground_at(*xyz[:4, :2].T))
+    np.testing.assert_allclose(xyz[4:], flat_map[2])
+    assert any("draped on the ground: 4" in str(issue.reason) for issue in read.issues)
+    (folder / "flat.csv").write_text("horizon,x,y,z\nT2,500100,3100100,0\nT2,500200,3100100,0\n")
+    read, _ = site(folder, '[traces]\nfile = "flat.csv"\n')
+    np.testing.assert_allclose(read.horizons["T2"].xyz[:, 2], [530, 540])
+    (folder / "flat.csv").write_text("horizon,x,y,z\nT2,500100,3100100,0\nT2,500200,3100100,\n")
+    read, _ = site(folder, '[traces]\nfile = "flat.csv"\n')
+    np.testing.assert_allclose(read.horizons["T2"].xyz[:, 2], [530, 540])
+    (folder / "flat.csv").write_text("horizon,x,y,z\nT2,500100,3100100,0\nT2,500200,3100100,5\n")
+    read, _ = site(folder, '[traces]\nfile = "flat.csv"\n')
+    np.testing.assert_allclose(read.horizons["T2"].xyz[:, 2], [0, 5])
+
+
+def test_a_map_at_0_is_imported_as_traces(folder, flat_map):
+    found = import_files([folder / "flat.gpkg", folder / "ground.asc"], folder / "new.toml")
+    xyz = found.site.horizons["T2"].xyz
+    np.testing.assert_allclose(xyz[:, 2], ground_at(*xyz[:, :2].T))
+
+
+@pytest.mark.parametrize("kind", ["LWPOLYLINE", "POLYLINE"])
+def test_flat_polylines_lie_at_their_true_place(folder, kind):
+    drawing = ezdxf.new()
+    corners = [(500100, 3100100), (500200, 3100150)]
+    # Mirrored in CAD: x and z count the other way.
+    for side in (1, -1):
+        flat, own = [(side * x, y) for x, y in corners], {"layer": "F1", "extrusion": (0, 0, side)}
+        if kind == "LWPOLYLINE":
+            drawing.modelspace().add_lwpolyline(flat, dxfattribs={**own, "elevation": side * 610.0})
+        else:
+            drawing.modelspace().add_polyline2d(flat, dxfattribs={**own, "elevation": (0, 0, side * 610.0)})
+    drawing.saveas(folder / "map.dxf")
+    read, _ = site(folder, '[traces]\nfile = "map.dxf"\n')
+    np.testing.assert_allclose(read.horizons["F1"].xyz, [(x, y, 610.0) for x, y in corners] * 2)
+
+
+def test_a_mirrored_text_names_the_contact_of_an_adit(folder):
+    drawing = ezdxf.new()
+    space = drawing.modelspace()
+    space.add_polyline3d([(500000, 3100500, 490), (500100, 3100500, 490)], dxfattribs={"layer": "PD1"})
+    space.add_text("F1", dxfattribs={"layer": "PD1", "insert": (-500050, 3100501), "extrusion": (0, 0, -1)})
+    drawing.saveas(folder / "plan.dxf")
+    read, _ = site(folder, '[[horizon]]\nname = "F1"\n[adits]\npath = "plan.dxf"\ncontacts = "plan.dxf"\n')
+    np.testing.assert_allclose(read.horizons["F1"].xyz, [[500050, 3100500, 490]])
+
+
 def test_a_flat_map_without_a_ground_says_so(folder):
     plan(folder)
     (folder / "site.toml").write_text(HORIZONS + '[traces]\nfile = "plan.dxf"\n')

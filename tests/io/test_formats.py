@@ -177,10 +177,25 @@ def test_las_samples_are_intervals(write):
     log = Source(path=path, table="CURVES", columns={"code": "FACIES"})
     holes = read_boreholes(Source(path=path), intervals=[log])
     np.testing.assert_allclose(holes.holes[0].xyz[0], [500100, 3100100, 30.48])
-    np.testing.assert_allclose(holes.logs[0].base[:2], [3.048, 6.096])
-    assert holes.logs[0].code.tolist() == ["1", "1", "2"]
-    # The last sample starts at the hole's end.
-    assert [(c.read, c.used, c.listed) for c in holes.counts] == [(1, 1, 0), (4, 3, 1)]
+    np.testing.assert_allclose(holes.logs[0].base, [3.048, 6.096, 9.144, 12.192])
+    assert holes.logs[0].code.tolist() == ["1", "1", "2", "2"]
+    assert [(c.read, c.used, c.listed) for c in holes.counts] == [(1, 1, 0), (4, 4, 0)]
+
+
+def test_a_las_file_that_runs_upwards_is_the_same_log(write):
+    pytest.importorskip("lasio")
+    head, _, body = LAS.partition("~ASCII\n")
+    upwards = head.replace("STRT.FT 0", "STRT.FT 30").replace("STOP.FT 30", "STOP.FT 0").replace("FT 10", "FT -10")
+    found = []
+    for text in (LAS, upwards + "~ASCII\n" + "\n".join(reversed(body.splitlines())) + "\n"):
+        path = write(text, "w.las")
+        log = Source(path=path, table="CURVES", columns={"code": "FACIES"})
+        found.append(read_boreholes(Source(path=path), intervals=[log]))
+    down, up = found
+    for one, other in ((down.logs[0].top, up.logs[0].top), (down.logs[0].base, up.logs[0].base)):
+        np.testing.assert_allclose(one, other)
+    assert down.logs[0].code.tolist() == up.logs[0].code.tolist()
+    np.testing.assert_allclose([down.ends["W-1"], up.ends["W-1"]], 12.192)
 
 
 def test_gocad_objects_and_depths(write):

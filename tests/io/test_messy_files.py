@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.io import read_boreholes, read_points, take_contacts
+from geofit.io.mapping import ColumnMapping
 from geofit.io.orientations import read_orientations
 from geofit.io.preview import preview_file
 from geofit.project.importing import import_files
@@ -112,6 +113,15 @@ def test_a_northing_under_x_is_warned_of(read, campaign, header, warned, zone):
     assert bool(of(found, "io.axes-like-exchanged")) is warned
 
 
+@pytest.mark.parametrize("first", [0, 1])
+def test_half_of_the_collars_exchanged_is_warned_of(read, campaign, first):
+    rows = [
+        (n, *((y, x) if i % 2 == first else (x, y)), *rest) for i, (n, x, y, *rest) in enumerate(campaign.collars())
+    ]
+    (half,) = of(read(table(COLLAR, rows)), "io.half-of-axes-exchanged")
+    assert (half.severity, half.reason.params["count"], half.reason.params["total"]) == ("warning", 20, 40)
+
+
 def test_degrees_under_x_and_y_are_warned_of(read, campaign):
     campaign.xy = [105.0, 28.0] + (campaign.xy - [501000, 3101000]) / 1e5
     rows = [(name, *place, *rest[2:]) for (name, *rest), place in zip(campaign.collars(), campaign.xy, strict=True)]
@@ -155,6 +165,33 @@ def test_a_wrong_elevation_of_a_collar_is_warned_of(read, campaign, by):
     (off,) = of(read(), "io.collar-off-neighbours")
     assert off.row == 9
     assert off.reason.params["height"] == pytest.approx(by, abs=60)
+
+
+@pytest.mark.parametrize("extreme", [9999.0, 99999.0, -1e6])
+def test_an_extreme_elevation_does_not_hide_other_wrong_ones(read, campaign, extreme):
+    collars = campaign.collars()
+    for i, z in ((7, -99.0), (20, 0.0), (33, extreme)):
+        collars[i] = (*collars[i][:3], z, collars[i][4])
+    found = of(read(table(COLLAR, collars)), "io.collar-off-neighbours")
+    assert [issue.row for issue in found] == [9, 22, 35]
+
+
+def test_a_row_between_blanks_with_an_empty_cell_is_not_shifted(read, campaign):
+    rows = campaign.collars()
+    rows[5] = (*rows[5][:3], "", rows[5][4])
+    found = read(table(COLLAR, rows, sep="  "))
+    assert [(issue.row, issue.severity) for issue in of(found, "io.row-cells-differ")] == [(7, "error")]
+    assert [hole.name for hole in found.holes] == [name for name in campaign.names if name != "ZK005"]
+    assert found.counts[0].listed == 1
+
+
+@pytest.mark.parametrize("huge", ["-3.4028235e+38", "3.4028234663852886E38", "1e+32"])
+def test_a_huge_elevation_is_a_mark_for_no_data(read, campaign, huge):
+    collars = campaign.collars()
+    collars[3] = (*collars[3][:3], huge, collars[3][4])
+    found = read(table(COLLAR, collars))
+    assert [issue.row for issue in of(found, "io.cell-marks-no-data")] == [5]
+    assert len(found.holes) == len(collars) - 1
 
 
 def test_many_elevations_in_feet_are_one_warning(read, campaign):
@@ -213,6 +250,26 @@ def test_the_attitude_of_the_collar_begins_a_survey(read, campaign):
     assert codes(found) == {"io.dip-sign-taken"}
     whole = read(table(COLLAR, campaign.collars()), table(SURVEY, [("ZK001", 0, 90, 60), ("ZK001", 60, 90, 80)]))
     np.testing.assert_allclose(found.paths["ZK001"].at(50.0), whole.paths["ZK001"].at(50.0))
+
+
+@pytest.mark.parametrize(
+    ("angles", "warned"),
+    [
+        ({"azimuth": 45, "inclination": -60}, ("azimuth", "dip", "inclination")),
+        ({"mag_az": 45, "dip": -60}, ("dip", "azimuth", "mag_az")),
+        ({"azimuth": 0, "remark": "ok"}, None),
+        ({"dip": -90, "remark": "ok"}, None),
+        ({"azimuth": 45, "dip": -60}, None),
+    ],
+)
+def test_a_collar_table_with_half_of_an_attitude_is_warned_of(read, campaign, angles, warned):
+    rows = [(*row, *angles.values()) for row in campaign.collars()]
+    found = of(read(table((*COLLAR, *angles), rows)), "io.half-attitude")
+    assert len(found) == (warned is not None)
+    if warned:
+        column, missing, unread = warned
+        assert (found[0].severity, found[0].column, found[0].reason.params["missing"]) == ("warning", column, missing)
+        assert unread in str(found[0].remedy)
 
 
 def test_holes_without_any_survey_are_noted(read, campaign):
@@ -382,19 +439,22 @@ def test_german_and_french_headers(write, campaign, tmp_path):
 # Imports
 
 
-def test_a_sheet_of_notes_does_not_hide_the_other_sheets(campaign, tmp_path):
+def workbook(path, sheets, hidden=()):
     openpyxl = pytest.importorskip("openpyxl")
     book = openpyxl.Workbook()
-    sheets = {
-        "Notes": [("sheet", "of", "notes")],
-        "Collar": [COLLAR, *campaign.collars()],
-        "Log": [LOG, *campaign.log()],
-    }
     for name, rows in sheets.items():
         sheet = book.create_sheet(name)
         for row in rows:
             sheet.append(row)
-    book.save(tmp_path / "site.xlsx")
+        sheet.sheet_state = "hidden" if name in hidden else "visible"
+    book.save(path)
+    return path
+
+
+def test_a_sheet_of_notes_does_not_hide_the_other_sheets(campaign, tmp_path):
+    notes = [("sheet", "of", "notes")]
+    sheets = {"Notes": notes, "Collar": [COLLAR, *campaign.collars()], "Log": [LOG, *campaign.log()]}
+    workbook(tmp_path / "site.xlsx", sheets)
     found = import_files([tmp_path / "site.xlsx"], tmp_path / "site.toml")
     assert {count.file: count.used for count in found.counts}["site.xlsx [Collar]"] == len(campaign.z)
     assert [issue.file for issue in of(found, "io.table-without-rows")] == ["site.xlsx [Notes]"]
@@ -429,6 +489,37 @@ def test_holes_in_two_collar_tables_are_warned_of(campaign, write, tmp_path):
     found = import_files([*files, write(table(LOG, campaign.log()), "log.csv")], tmp_path / "site.toml")
     (split,) = of(found, "io.holes-in-other-collars")
     assert (split.file, split.reason.params["count"]) == ("log.csv", 15)
+
+
+@pytest.mark.parametrize("away", [0.0, 3.0])
+def test_two_collar_tables_of_the_same_holes_are_warned_of(campaign, write, tmp_path, away):
+    moved = [(name, x, y, round(z + away, 2), depth) for name, x, y, z, depth in campaign.collars()[:30]]
+    tables = {"old.csv": (COLLAR, moved), "new.csv": (COLLAR, campaign.collars()), "log.csv": (LOG, campaign.log())}
+    files = [write(table(header, rows), name) for name, (header, rows) in tables.items()]
+    (shared,) = of(import_files(files, tmp_path / "site.toml"), "io.holes-in-two-collar-tables")
+    assert (shared.file, shared.severity, shared.reason.params["count"]) == ("new.csv", "warning", 30)
+    assert ("3.00 m" if away else "same place") in str(shared.reason)
+    assert "logs are read with new.csv" in str(shared.reason)
+
+
+def test_a_file_that_is_given_twice_is_read_once(campaign, write, tmp_path):
+    file = write(table(COLLAR, campaign.collars()), "collar.csv")
+    found = import_files([file, file, write(table(LOG, campaign.log()), "log.csv")], tmp_path / "site.toml")
+    assert [one.file for one in of(found, "io.file-read-once")] == ["collar.csv"]
+    assert len(found.site.holes) == len(campaign.z)
+
+
+def test_a_hidden_sheet_is_not_used_and_its_rows_are_listed(campaign, tmp_path):
+    old = [(name, x, y, z + 40, depth) for name, x, y, z, depth in campaign.collars()]
+    sheets = {"Old": [COLLAR, *old], "Collar": [COLLAR, *campaign.collars()], "Log": [LOG, *campaign.log()]}
+    file = workbook(tmp_path / "site.xlsx", sheets, hidden=("Old",))
+    found = import_files([file], tmp_path / "site.toml")
+    np.testing.assert_allclose([hole.xyz[0, 2] for hole in found.site.holes], np.round(campaign.z, 2))
+    assert [(one.file, one.severity) for one in of(found, "io.sheet-hidden")] == [("site.xlsx [Old]", "warning")]
+    assert {one.file: one.listed for one in found.counts}["site.xlsx [Old]"] == len(old)
+    wanted = [ColumnMapping(file="site.xlsx", table="Old", kind="collar")]
+    stated = import_files([file], tmp_path / "other.toml", mappings=wanted)
+    assert not of(stated, "io.sheet-hidden")
 
 
 # Names that stand once a block

@@ -57,6 +57,33 @@ def test_scale_and_origin(drawing, write):
     np.testing.assert_allclose(load(table, **how)[0]["A"].xyz, expected)
 
 
+def test_the_origin_counts_in_drawing_units(drawing, make_site):
+    feet = [(100.0, 200.0 + 80 / 0.3048), (100.0 + 250 / 0.3048, 200.0 + 81 / 0.3048)]
+    space, save = drawing
+    space.add_lwpolyline(feet, dxfattribs={"layer": "T2-T1"})
+    for file in (save().name, "section.csv", "mixed.csv"):
+        table = "horizon,distance,elevation\n" + "".join(f"T2-T1,{u},{v}\n" for u, v in feet)
+        mixed = f"horizon,distance [ft],elevation\nT2-T1,{feet[0][0]},280\nT2-T1,{feet[1][0]},281\n"
+        path = make_site(**{"section.csv": table, "mixed.csv": mixed})
+        unit = "" if file == "mixed.csv" else 'unit = "ft"\n'
+        path.write_text(
+            '[[section]]\nname = "C1"\nline = [[500000, 3100000], [500300, 3100400]]\norigin = [100, 200]\n'
+            f'file = "{file}"\n{unit}',
+            encoding="utf-8",
+        )
+        found = read_site(path).horizons["T2-T1"].xyz
+        np.testing.assert_allclose(found, [[500000, 3100000, 80], [500150, 3100200, 81]], atol=1e-6)
+
+
+@pytest.mark.parametrize(("code", "unit"), [(3, "miles"), (7, "kilometres"), (10, "yards"), (21, "US survey feet")])
+def test_rarer_units_of_a_drawing_are_warned_of(drawing, code, unit):
+    space, save = drawing
+    space.doc.header["$INSUNITS"] = code
+    space.add_lwpolyline([(0, 80), (9, 81)], dxfattribs={"layer": "A"})
+    _, journal = load(save())
+    assert [str(issue.reason.params["unit"]) for issue in journal.issues if issue.severity == "warning"] == [unit]
+
+
 def test_what_is_not_used_is_listed(drawing):
     space, save = drawing
     space.add_lwpolyline([(0, 80), (1000.5, 81), (1001, 82), (-1, 83)], dxfattribs={"layer": "A"})

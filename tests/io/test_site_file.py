@@ -336,6 +336,24 @@ def test_one_point_is_warned_of(make_site):
     assert any("weathering has one point only" in str(issue.reason) for issue in site.issues)
 
 
+def test_names_that_differ_in_marks_are_one_horizon(make_site):
+    site = read_site(make_site(outcrops="horizon,x,y\nT2_T1,500500,3100500\nt2-t1,500510,3100500\n"))
+    assert list(site.horizons) == ["T2-T1", "weathering"]
+    outcrops = site.horizons["T2-T1"].xyz[site.horizons["T2-T1"].kind == "outcrop"]
+    assert outcrops[:, 0].tolist() == [500500, 500510]
+
+
+def test_a_site_without_a_horizon_states_why(tmp_path):
+    (tmp_path / "s.csv").write_text("horizon,distance,elevation\nT2,1000,700\nT2,1100,701\n")
+    line = "[[500000, 3100000], [500500, 3100000]]"
+    (tmp_path / "site.toml").write_text(f'[[section]]\nname = "C"\nline = {line}\nfile = "s.csv"\n')
+    with pytest.raises(InputError, match=r"no horizon; .*: 2, the first is s\.csv, row 2: The distance 1000") as wrong:
+        read_site(tmp_path / "site.toml")
+    assert [issue.reason.code for issue in wrong.value.issues if issue.severity == "error"] == [
+        "io.distance-off-section"
+    ] * 2
+
+
 def test_outcrop_without_ground_is_an_error(make_site):
     text = re.sub(r"\[ground\]\nfile = \S+\n", "", make_site().read_text("utf-8"))
     with pytest.raises(InputError, match="no ground on which to place"):

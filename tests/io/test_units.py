@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from geofit.data.errors import InputError
+from geofit.io.boreholes import read_boreholes
 from geofit.io.clouds import open_cloud
 from geofit.io.picks import read_points
 from geofit.io.site_file import read_site
@@ -158,6 +159,32 @@ def test_clouds_in_feet(tmp_path):
     assert np.concatenate(list(stated.chunks())) == pytest.approx(feet * SURVEY)
     with pytest.raises(InputError, match="furlong"):
         open_cloud(tmp_path / "c.parquet", unit="furlong")
+
+
+@pytest.mark.parametrize(
+    "row", [",(ftUS),(ftUS),(ft),(ft)", "ID,ftUS,US survey feet,ft,[ft]", "-,us-ft,ftUS,ft bgl,ft"]
+)
+def test_a_row_of_units_with_an_unknown_cell_is_one(tmp_path, row):
+    body = "".join(f"T2,{EAST + 30 * k * k},{NORTH + 370 * k},{700 + k},1\n" for k in range(6))
+    (tmp_path / "p.csv").write_text(f"horizon,x,y,z (NAVD88),accuracy\n{row}\n{body}")
+    (tmp_path / "site.toml").write_text('[picks]\nfile = "p.csv"\n')
+    site = read_site(tmp_path / "site.toml")
+    np.testing.assert_allclose(site.horizons["T2"].xyz[0], [EAST * SURVEY, NORTH * SURVEY, 700 * FOOT])
+    assert not [issue for issue in site.issues if issue.severity == "error"]
+
+
+def test_an_unknown_unit_of_a_length_is_warned_of(tmp_path):
+    (tmp_path / "p.csv").write_text("x,y,z\nm,m,fathoms\n1,2,3\n4,6,5\n9,7,7\n")
+    (tmp_path / "site.toml").write_text('[picks]\nfile = "p.csv"\nhorizon = "T"\n')
+    (issue,) = [issue for issue in read_site(tmp_path / "site.toml").issues if issue.severity == "warning"]
+    assert (issue.reason.code, issue.column) == ("io.unit-of-column-unknown", "z")
+
+
+def test_a_row_of_units_may_name_that_of_angles(tmp_path):
+    (tmp_path / "c.csv").write_text("hole,x,y,z,depth\nB1,0,0,0,40\n")
+    (tmp_path / "s.csv").write_text("hole,depth,azimuth,dip\n,m,gon,gon\nB1,0,100,50\nB1,40,100,50\n")
+    paths = read_boreholes(tmp_path / "c.csv", tmp_path / "s.csv").paths
+    np.testing.assert_allclose(paths["B1"].xyz[-1], [np.cos(np.pi / 4) * 40, 0, -np.sin(np.pi / 4) * 40], atol=1e-9)
 
 
 def test_marks_that_are_no_unit_of_length():
