@@ -19,8 +19,8 @@ __all__ = ["SETS", "RealSet", "data_folder", "rectangle"]
 KIMBERLINA_WELLS, WEKA_HOLES = 30, 15
 #: Share of Claudius' cloud that is given beside the section, by the file's own random number.
 CLAUDIUS_SHARE = 0.2
-#: Limits of frequent codes of Copper Creek.
-COPPER_LIMITS = ("top of pqd", "top of GHv", "top of bx", "base of gd")
+#: Frequent codes of Copper Creek.
+COPPER_CODES = ("pqd", "gdp", "GHv", "bx", "mgp", "gd")
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,11 +142,9 @@ def _weka_hills(folder: Path) -> RealSet:
 def _copper_creek(folder: Path) -> RealSet:
     path = folder / "copper_creek"
     holes = read_boreholes(path / "collar.csv", path / "survey.csv", [path / "lithology.csv"])
-    limits = _limits(holes)
-    site = _site("Copper Creek", {name: limits[name] for name in COPPER_LIMITS}, holes, holes=holes.holes)
-    words = (
-        "limits of four frequent codes, all contacts given (gdp and mgp take up to a minute a fit: too long for folds)"
-    )
+    limits, names = _limits(holes), [f"{end} of {code}" for code in COPPER_CODES for end in ("top", "base")]
+    site = _site("Copper Creek", {name: limits[name] for name in names}, holes, holes=holes.holes)
+    words = f"tops and bases of {len(COPPER_CODES)} frequent codes, all contacts given"
     return RealSet("Copper Creek", site, words)
 
 
