@@ -36,6 +36,9 @@ Ends = Literal["round", "flat"]
 STEEP = 60.0
 #: A wall is no nearer than this, so that a station at a wall leaves a body, metres.
 THIN = 0.05
+#: Passages so many times as high as wide, or as wide as high, are slots. Cells as small as :attr:`PassageBody.fine` are
+#: so many along their walls that volumes take wider ones, until there are this many, at most this part of the width.
+SLOT, SLOT_CELLS, SLOT_WIDTH = 8.0, 200_000, 0.375
 
 
 @arguments_checked
@@ -129,13 +132,25 @@ class PassageBody(OwnField):
         )
 
     def columns(self, spacing: float | None = None) -> Columns:
-        """Return the body as vertical intervals on a grid in plan, for volumes (:mod:`geofit.caves.columns`)."""
-        step = _spacing(spacing if spacing is not None else self.fine)
+        """Return the body as vertical intervals on a grid in plan, for volumes (:mod:`geofit.caves.columns`).
+
+        The default spacing is :attr:`fine`, up to three times as much in a body of long slots, whose volume then errs
+        by up to 0.2 %.
+        """
+        step = _spacing(spacing if spacing is not None else self._volume_spacing)
         return columns(self._cells, self.boxes, step)
 
     def volume(self, spacing: float | None = None) -> float:
         """Return the volume in cubic metres; overlaps of passages count once."""
         return self.columns(spacing).volume
+
+    @property
+    def _volume_spacing(self) -> float:
+        across = self.sweeps.walls[..., ::2] + self.sweeps.walls[..., 1::2]
+        if np.median(across.max(axis=2) / across.min(axis=2)) < SLOT:
+            return self.fine
+        area = 2 * float((self.sweeps.length * across.sum(axis=2).mean(axis=1)).sum())
+        return float(np.clip(np.sqrt(area / SLOT_CELLS), self.fine, 8 * SLOT_WIDTH * self.fine))
 
     @cached_property
     def _cells(self) -> SweepCells:

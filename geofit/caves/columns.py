@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.caves.sweep_loops import SweepCells, extremes, paint_sweeps
+from geofit.caves.sweep_loops import SweepCells, extremes, half_axes, margin, paint_sweeps
 from geofit.caves.sweeps import Sweeps
 
 __all__ = ["Columns", "columns"]
@@ -26,6 +26,8 @@ Floats = NDArray[np.float64]
 NODES, TILE = 8_000_000, 96
 #: Rise of the field in metres a metre beyond which points are counted.
 STEEP = 2.0
+#: Cells that are counted at once.
+SOME = 20_000
 #: Points that are counted in a cell, in cells from its middle: a lattice rule, each at a height of its own.
 COUNTED = (np.outer(np.arange(32), [1, 7, 19]) / 32 + 1 / 64) % 1 - 0.5
 
@@ -75,11 +77,11 @@ def columns(cells: SweepCells, boxes: tuple[Floats, Floats], spacing: float) -> 
             shape = (min(wide, nx - 1 - first) + 2, min(wide, ny - 1 - side) + 2, nz)
             near, inside = _near(sweeps, blend, boxes, start, spacing, shape)
             if len(near.length):
-                # Nor is the height of all others that of this tile.
-                bottom = max(0, int((inside[0][:, 2].min() - start[2]) // spacing) - 3)
-                top = min(nz, int((inside[1][:, 2].max() - start[2]) // spacing) + 5)
-                start[2] += bottom * spacing
-                shape = (*shape[:2], top - bottom)
+                # Nor does it fill the tile.
+                first_node = np.maximum(0, (inside[0].min(axis=0) - start) // spacing - 3).astype(int)
+                end_node = np.minimum(shape, (inside[1].max(axis=0) - start) // spacing + 5).astype(int)
+                start += first_node * spacing
+                shape = tuple((end_node - first_node).tolist())
                 share = _shares()(paint_sweeps(near, blend, inside, start, spacing, shape), spacing)
                 steep = np.nonzero(np.isnan(share))
                 share[steep] = _counted(cells, start + spacing * np.transpose(steep), spacing)
@@ -107,17 +109,26 @@ def _near(
     begin, end = np.clip(ends[0].max(axis=1), 0, 1), np.clip(ends[1].min(axis=1), 0, 1)
     crosses = ends[0].max(axis=1) <= ends[1].min(axis=1)
     a, b = origin + begin[:, None] * way, origin + end[:, None] * way
-    inside = (
-        np.maximum(np.minimum(a, b) - reach, boxes[0][close])[crosses],
-        np.minimum(np.maximum(a, b) + reach, boxes[1][close])[crosses],
-    )
-    return sweeps.chosen(close[crosses]), inside
+    # A slot is much narrower than it is high.
+    chosen = sweeps.chosen(close)
+    if len(close):
+        frame = np.abs([chosen.right, chosen.up, chosen.along])
+        axes = half_axes(chosen) + margin(chosen, blend, spacing)
+        reach = np.minimum(reach, np.einsum("ki,ikx->kx", axes, frame))
+    bottom = np.maximum(np.minimum(a, b) - reach, boxes[0][close])
+    top = np.minimum(np.maximum(a, b) + reach, boxes[1][close])
+    inside = crosses & (bottom[:, :2] <= high + 2 * spacing).all(axis=1) & (top[:, :2] >= low - 2 * spacing).all(axis=1)
+    return chosen.chosen(inside), (bottom[inside], top[inside])
 
 
 def _counted(cells: SweepCells, middles: Floats, spacing: float) -> Floats:
     """Return the part (n,) of points inside in cells about middles (n, 3)."""
-    points = (middles[:, None] + spacing * COUNTED).reshape(-1, 3)
-    return np.asarray((cells.values(points) < 0).reshape(-1, len(COUNTED)).mean(axis=1))
+    found = np.empty(len(middles))
+    for first in range(0, len(middles), SOME):
+        points = middles[first : first + SOME, None] + spacing * COUNTED
+        inside = cells.values(points.reshape(-1, 3)) < 0
+        found[first : first + SOME] = inside.reshape(-1, len(COUNTED)).mean(axis=1)
+    return found
 
 
 def _intervals(share: Floats, corner: Floats, spacing: float) -> tuple[Floats, ...]:

@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 
 from geofit.caves.sweeps import Sweeps
 
-__all__ = ["SweepCells", "extremes", "paint_sweeps", "ranges"]
+__all__ = ["SweepCells", "extremes", "half_axes", "margin", "paint_sweeps", "ranges"]
 
 Floats = NDArray[np.float64]
 
 #: Cells of the grid at most.
 CELLS = 60_000
+#: Spacings beyond the walls of a sweep within which its values are needed.
+MARGIN = 4
 
 
 def _arrays(sweeps: Sweeps) -> tuple[Any, ...]:
@@ -27,6 +29,17 @@ def extremes(sweeps: Sweeps) -> tuple[Floats, Floats]:
     """Return the largest and smallest semi-axis (k,), (k,) of each sweep; 0 where an end is flat."""
     most = np.maximum(sweeps.walls.max(axis=(1, 2)), sweeps.cap.max(axis=1))
     return most, np.minimum(sweeps.walls.min(axis=(1, 2)), sweeps.cap.min(axis=1))
+
+
+def half_axes(sweeps: Sweeps) -> Floats:
+    """Return how far (k, 3) each sweep reaches from its axis to a side, up or down, and beyond an end."""
+    side, level = sweeps.walls[..., :2].max(axis=(1, 2)), sweeps.walls[..., 2:].max(axis=(1, 2))
+    return np.column_stack([side, level, sweeps.cap.max(axis=1)])
+
+
+def margin(sweeps: Sweeps, blend: float, spacing: float) -> float:
+    """Return the distance from the walls beyond which sweeps change nothing: a single branch does not blend."""
+    return (blend if np.ptp(sweeps.branch) else 0.0) + MARGIN * spacing
 
 
 class SweepCells:
@@ -64,7 +77,8 @@ class SweepCells:
 def ranges(sweeps: Sweeps, blend: float, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
     """Return bounds (k,), (k,) of the field in boxes with corners (k, 3)."""
     low, high = np.empty(len(lower)), np.empty(len(lower))
-    _loops()[2](lower, upper, sweeps.origin, sweeps.along, sweeps.length, *extremes(sweeps), blend, low, high)
+    frame = sweeps.origin, sweeps.along, sweeps.right, sweeps.up, sweeps.length
+    _loops()[2](lower, upper, *frame, *extremes(sweeps), half_axes(sweeps), blend, low, high)
     return low, high
 
 
@@ -77,7 +91,10 @@ def paint_sweeps(
     first = np.maximum(np.floor((boxes[0] - origin) / spacing).astype(np.int64) - 2, 0)
     last = np.minimum(np.ceil((boxes[1] - origin) / spacing).astype(np.int64) + 2, np.array(shape) - 1)
     # Beyond this distance from the axis a node is outside, has no neighbour inside, and does not blend.
-    far = extremes(sweeps)[0] + blend + 2 * spacing
+    round_it = extremes(sweeps)[0] + blend + 2 * spacing
+    # Nor does one so far beyond its walls, and no neighbour is near them: slots are much narrower than they are high.
+    beside = half_axes(sweeps)[:, :2] + margin(sweeps, blend, spacing)
+    far = np.column_stack([beside, round_it])
     _loops()[3](first, last, origin, spacing, *_arrays(sweeps), sweeps.branch, far, best, second, owner)
     if blend > 0:
         near = second < best + blend
@@ -183,14 +200,19 @@ def _loops() -> tuple[Any, Any, Any, Any]:
                 found[p] -= (blend - (second - best)) ** 2 / (4 * blend)
 
     @njit(cache=True)
-    def in_boxes(lower, upper, origin, along, length, most, least, blend, low, high):  # type: ignore[no-untyped-def]  # pragma: no cover
+    def in_boxes(  # type: ignore[no-untyped-def]  # pragma: no cover
+        lower, upper, origin, along, right, up, length, most, least, reach, blend, low, high
+    ):
         for k in range(len(lower)):
             x, y, z = 0.5 * (lower[k] + upper[k])
             half = 0.5 * np.sqrt(((upper[k] - lower[k]) ** 2).sum())
             low[k] = high[k] = np.inf
             for n in range(len(length)):
                 away = axis_distance(x, y, z, n, origin, along, length)
-                nearest = away - half - most[n]
+                qx, qy, qz = x - origin[n, 0], y - origin[n, 1], z - origin[n, 2]
+                side = abs(qx * right[n, 0] + qy * right[n, 1] + qz * right[n, 2]) - reach[n, 0]
+                level = abs(qx * up[n, 0] + qy * up[n, 1] + qz * up[n, 2]) - reach[n, 1]
+                nearest = max(away - most[n], side, level) - half
                 low[k] = min(low[k], nearest, 0.5 * nearest)
                 # Near a flat end the plane may exceed what the distance from the axis says.
                 if least[n] > 0:
@@ -206,7 +228,12 @@ def _loops() -> tuple[Any, Any, Any, Any]:
                 for j in range(first[n, 1], last[n, 1] + 1):
                     for k in range(first[n, 2], last[n, 2] + 1):
                         x, y, z = corner[0] + i * spacing, corner[1] + j * spacing, corner[2] + k * spacing
-                        if axis_distance(x, y, z, n, origin, along, length) > far[n]:
+                        if axis_distance(x, y, z, n, origin, along, length) > far[n, 2]:
+                            continue
+                        qx, qy, qz = x - origin[n, 0], y - origin[n, 1], z - origin[n, 2]
+                        if abs(qx * right[n, 0] + qy * right[n, 1] + qz * right[n, 2]) > far[n, 0]:
+                            continue
+                        if abs(qx * up[n, 0] + qy * up[n, 1] + qz * up[n, 2]) > far[n, 1]:
                             continue
                         here = sweep(x, y, z, n, origin, along, right, up, length, walls, cap)
                         if branch[n] == owner[i, j, k]:

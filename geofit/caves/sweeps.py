@@ -40,8 +40,8 @@ class Sweeps:
     cap: Floats
     branch: Ints
 
-    def chosen(self, index: Ints) -> Sweeps:
-        """Return some of the sweeps, by their numbers."""
+    def chosen(self, index: Ints | NDArray[np.bool_]) -> Sweeps:
+        """Return some of the sweeps, by their numbers or a mask."""
         return Sweeps(*(getattr(self, one.name)[index] for one in fields(self)))
 
     @property

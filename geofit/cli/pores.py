@@ -57,6 +57,8 @@ def pores(
         _print(run)
     for text in run.permeability.messages:
         say(text)
+    if run.surface_note is not None:
+        say(run.surface_note)
     say(f"Files: {', '.join(file.name for file in run.files)} in {out}")
     return 0
 

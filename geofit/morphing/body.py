@@ -19,6 +19,7 @@ from geofit.implicit.field import Field
 from geofit.implicit.isosurface import isosurface
 from geofit.implicit.lattice import Lattice
 from geofit.implicit.mesh import TriangleMesh
+from geofit.morphing.parts import solid_parts
 
 if TYPE_CHECKING:
     from geofit.cad.solid_read_back import SolidReadBack
@@ -125,8 +126,8 @@ class MorphBody(ImplicitBody):
 
     @property
     def components(self) -> int:
-        """Number of closed surfaces, cavities included."""
-        return self.overview.components
+        """Number of separate parts; cavities within them are not counted."""
+        return solid_parts(self.overview)
 
     @cached_property
     def extent(self) -> tuple[Floats, Floats]:

@@ -18,7 +18,7 @@ from geofit.implicit.lattice import Lattice
 from geofit.morphing.arrival import arrival, source_field
 from geofit.morphing.distance import Samples, both_distances, distances, front_distances
 from geofit.morphing.errors import MorphError
-from geofit.morphing.parts import SEED, LonePart, isolated_parts, with_seeds, without_parts
+from geofit.morphing.parts import SEED, LonePart, isolated_parts, solid_parts, with_seeds, without_parts
 from geofit.morphing.paths import BLOCK, Line, Path, level_set_path, quick_surface, samples_at
 
 __all__ = ["Leg", "Mode", "Pace", "leg_between"]
@@ -183,9 +183,9 @@ class Leg:
         return float(beyond + missing) * cell
 
     def topology(self, s: float) -> tuple[int, int]:
-        """Return components and Euler number of the frame at share s."""
+        """Return the number of separate parts and the Euler number of the frame at share s."""
         mesh = quick_surface(self.path, s)
-        return mesh.components, mesh.euler
+        return solid_parts(mesh), mesh.euler
 
 
 def leg_between(
@@ -227,6 +227,16 @@ def leg_between(
         path = Line(lattice, first.astype(np.float32), d_b.astype(np.float32))
     else:
         source = source_field(arrival(first, d_b, lattice.spacing), first, d_b, lattice.spacing)
+        if not (np.abs(source) < np.finfo(np.float32).max).all():
+            raise MorphError(
+                message(
+                    "morphing.front-unbounded",
+                    "No front leads from body {earlier} to body {later}: parts of a mesh overlap or are inside out. "
+                    "Repair the meshes.",
+                    earlier=leg + 1,
+                    later=leg + 2,
+                )
+            )
         path = Line(lattice, source.astype(np.float32), d_b.astype(np.float32))
     return Leg(path, d_a, d_b, start, end, unreached, vanishing)
 

@@ -12,7 +12,7 @@ from geofit.implicit.lattice import Lattice
 from geofit.implicit.mesh import TriangleMesh
 from geofit.morphing.distance import Samples
 
-__all__ = ["LonePart", "isolated_parts", "with_seeds", "without_parts"]
+__all__ = ["LonePart", "isolated_parts", "solid_parts", "with_seeds", "without_parts"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -69,6 +69,15 @@ def isolated_parts(
         parts.append(LonePart(kind, len(nodes) * lattice.spacing**3, at + origin, depth, leg))
     parts.sort(key=lambda part: -part.volume)
     return tuple(parts), alone
+
+
+def solid_parts(mesh: TriangleMesh) -> int:
+    """Return the number of separate parts of a closed mesh: a cavity is a closed surface of its own, but no part."""
+    if not len(mesh.triangles):
+        return 0
+    # About a place near by: far from the origin the tetrahedra would cancel.
+    outward = ((mesh.corners.mean(axis=1) - mesh.vertices.mean(axis=0)) * mesh.area_vectors).sum(axis=1)
+    return int(np.count_nonzero(np.bincount(mesh.component_of, outward) > 0))
 
 
 def _deepest(nodes: NDArray[np.int64], lattice: Lattice) -> tuple[float, Floats]:

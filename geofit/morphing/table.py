@@ -10,7 +10,6 @@ import numpy as np
 
 from geofit.data.progress import Progress, tell
 from geofit.morphing.change import DAYS, change_sd
-from geofit.morphing.paths import quick_surface
 
 if TYPE_CHECKING:
     from geofit.morphing.sequence import Morph
@@ -25,9 +24,10 @@ LOOKED, HALVINGS = 32, 8
 class FrameRow:
     """One frame: volumes in m3, area in m2.
 
-    ``gain`` and ``loss`` count from the first survey of its leg, ``net`` is their difference, ``rate`` that over the
-    years since then (over tau without dates), nan at a survey. ``sd`` is the standard deviation of ``net``, nan without
-    those of the surveys. ``drift`` is the volume outside the corridor between the surveys.
+    ``components`` counts separate parts; cavities within them are not counted. ``gain`` and ``loss`` count from the
+    first survey of its leg, ``net`` is their difference, ``rate`` that over the years since then (over tau without
+    dates), nan at a survey. ``sd`` is the standard deviation of ``net``, nan without those of the surveys. ``drift`` is
+    the volume outside the corridor between the surveys.
     """
 
     tau: float
@@ -48,7 +48,10 @@ class FrameRow:
 
 @dataclass(frozen=True)
 class Event:
-    """A change of topology at ``tau``: closed surfaces and Euler number before and after."""
+    """A change of topology at ``tau``: separate parts and Euler number before and after.
+
+    A cavity is not counted: one that closes or opens changes the Euler number by 2.
+    """
 
     tau: float
     date: date | None
@@ -81,14 +84,10 @@ def rows(morph: Morph, n: int, progress: Progress | None = None) -> tuple[FrameR
 
 
 def events(morph: Morph) -> tuple[Event, ...]:
-    """Return the changes of components and Euler number in the order of tau, placed by halving."""
+    """Return the changes of parts and Euler number in the order of tau, placed by halving."""
     found = []
     for k, leg in enumerate(morph.legs):
-
-        def look(s: float, path: object = leg.path) -> tuple[int, int]:
-            mesh = quick_surface(path, s)  # type: ignore[arg-type]
-            return mesh.components, mesh.euler
-
+        look = leg.topology
         shares = np.linspace(0, 1, LOOKED + 1)
         seen = [look(s) for s in shares.tolist()]
         for i in range(LOOKED):

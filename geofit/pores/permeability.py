@@ -70,7 +70,15 @@ def network_permeability(network: PoreNetwork) -> Permeability:
     -------
     Permeability
         An axis along which the pore space is not connected has permeability 0 and a message; it is not an error.
+
+    Raises
+    ------
+    VolumeError
+        If all voxels are pore: nothing bounds the flow.
     """
+    from geofit.pores.surface import require_rock
+
+    require_rock(network)
     edges = network.edges
     conduits, inlets = _conduits(network), _face_conduits(network)
     lengths = np.array(network.shape) * edges

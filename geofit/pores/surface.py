@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.bodies.implicit_body import OwnField
 from geofit.data.given import arguments_checked
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 from geofit.data.progress import Progress, tell
 from geofit.implicit.field import Box, Field, points_of
 from geofit.implicit.mesh import TriangleMesh
@@ -40,15 +40,19 @@ if TYPE_CHECKING:
     from geofit.cad.step_origin import StepFields
     from geofit.pores.sliced import SlicedVolume
 
-__all__ = ["Construction", "ContactField", "PoreSurface", "pore_surface", "require_rock"]
+__all__ = ["Construction", "ContactField", "PoreSurface", "pore_surface", "require_rock", "volume_note"]
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 Construction = Literal["contact", "blend"]
 
 #: Support of a contact, in voxels: two layers of contacts on either side.
 _SUPPORT = 2.5
 #: The volume is measured in at most so many boxes of so many voxels along each axis, and corrected so often.
 BOXES, BOX, ROUNDS = 16, 32, 2
+#: Where cells as large as voxels miss more than this share of the volume, as in channels one voxel wide, they are
+#: halved, down to this part of a voxel, and while the sample has no more of them than this.
+MISSED, LEAST_CELL, MOST_CELLS = 0.05, 0.25, 1 << 24
 #: Value of the field in a voxel that is held, and how often faults are looked for.
 _HOLD, RESCUES = 0.5, 4
 #: Fewest places that are worth a thread of their own.
@@ -73,6 +77,8 @@ class ContactField:
         Length of the shortest edge in metres.
     shift : float
         Taken off the field, in units, so that the body has the volume of its voxels.
+    cell : float
+        Edge of the cells, in units, whose triangles have that volume.
     held : ndarray of int, shape (m, 3)
         Voxels in which the field keeps the sign that they have, because averaged planes would close a throat there or
         break a wall.
@@ -85,6 +91,7 @@ class ContactField:
     edges: tuple[float, float, float]
     unit: float
     shift: float = 0.0
+    cell: float = 1.0
     held: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 3), np.int64))
 
     @cached_property
@@ -213,8 +220,11 @@ class PoreSurface(OwnField):
 
     @property
     def overview_spacing(self) -> float:
-        """Edge of the overview's cells, metres: that of the voxels. It is capped at the faces of the sample."""
-        return self.spacing
+        """Edge of the overview's cells, metres: that of the voxels, or a part of it where channels are as narrow.
+
+        The overview is capped at the faces of the sample.
+        """
+        return self.spacing * self.field.cell if isinstance(self.field, ContactField) else self.spacing
 
     def _mesh_of_cells(self, spacing: float) -> TriangleMesh:
         return mesh_in_box(self.field, *self.bounds, spacing)
@@ -327,8 +337,8 @@ def pore_surface(
     return PoreSurface(body, volume.shape, volume.voxel, construction)
 
 
-def require_rock(volume: RockVolume | SlicedVolume) -> None:
-    """Refuse a volume in which all voxels are pore: nothing bounds its pores, throats or flow.
+def require_rock(volume: RockVolume | SlicedVolume | PoreNetwork) -> None:
+    """Refuse a volume, or its network, in which all voxels are pore: nothing bounds its pores, throats or flow.
 
     Raises
     ------
@@ -344,6 +354,26 @@ def require_rock(volume: RockVolume | SlicedVolume) -> None:
                 shape=volume.shape,
             )
         )
+
+
+def volume_note(triangles: float, voxels: float) -> Message | None:
+    """Return what the triangles have more or less than the voxels, given the porosity of both; None if it is little."""
+    if not triangles:
+        return message(
+            "pores.no-surface",
+            "No surface was written: it has no triangles, and the pores of the network are {share:.2%} of the sample. "
+            "Figures of the rebuilt rock are those of its voxels.",
+            share=voxels,
+        ).with_severity("warning")
+    if abs(triangles - voxels) <= MISSED * voxels:
+        return None
+    return message(
+        "pores.surface-volume-off",
+        "The volume within the triangles of the surface differs by {change:+.0%} from that of the voxels: channels or "
+        "walls are as narrow as a voxel. Finer voxels of a smaller sample resolve them; figures of the rebuilt rock "
+        "are those of its voxels.",
+        change=triangles / voxels - 1,
+    ).with_severity("warning")
 
 
 def _contact_field(volume: RockVolume) -> ContactField:
@@ -366,11 +396,16 @@ def _contact_field(volume: RockVolume) -> ContactField:
             low = shift
         else:
             high = shift
-    body = replace(raw, shift=0.5 * (low + high))
-    # Voxels that are held change the volume a little, and another volume the faults.
-    for _ in range(ROUNDS):
-        body = _rescued(_of_equal_volume(body, volume), volume, near, heights)
-    return _rescued(_of_equal_volume(body, volume), volume, near, heights)
+    raw = replace(raw, shift=0.5 * (low + high))
+    while True:
+        body = raw
+        # Voxels that are held change the volume a little, and another volume the faults.
+        for _ in range(ROUNDS + 1 if raw.cell == 1 else 2 * ROUNDS + 2):
+            body = _rescued(_of_equal_volume(body, volume), volume, near, heights)
+        cells = volume.pore.size * np.prod(volume.edges) / (raw.cell / 2) ** 3
+        if raw.cell <= LEAST_CELL or cells > MOST_CELLS or abs(_measured(body, volume)[0]) <= MISSED:
+            return body
+        raw = replace(raw, cell=raw.cell / 2)
 
 
 def _rescued(body: ContactField, volume: RockVolume, near: NDArray[np.int64], heights: Floats) -> ContactField:
@@ -409,21 +444,44 @@ def _with_held(body: ContactField, volume: RockVolume, near: NDArray[np.int64], 
 def _of_equal_volume(body: ContactField, volume: RockVolume) -> ContactField:
     """Return the body grown or shrunk so that its triangles have the volume of the voxels, in boxes of the sample.
 
-    Triangles see nothing thinner than a voxel: where spheres touch, they lose rock.
+    Triangles see nothing thinner than a cell: where spheres touch, they lose rock.
     """
-    boxes = list(itertools.product(*(range(0, n, BOX) for n in volume.shape)))
-    missing = area = 0.0
-    if len(boxes) > BOXES:
-        chosen = np.random.default_rng(len(boxes)).choice(len(boxes), BOXES, replace=False)
-        boxes = [boxes[k] for k in chosen]
-    for first in boxes:
-        last = np.minimum(np.add(first, BOX), volume.shape)
-        voxels = volume.pore[tuple(slice(a, b) for a, b in zip(first, last, strict=True))]
-        low, high = np.multiply(first, volume.voxel), np.multiply(last, volume.voxel)
-        mesh = mesh_in_box(body, low, high, volume.unit, slivers=True)
-        missing += np.count_nonzero(voxels) * float(np.prod(volume.voxel)) - mesh.volume
-        area += float(mesh.areas.sum())
+    _, missing, area = _measured(body, volume)
     return replace(body, shift=body.shift + missing / (area * volume.unit)) if area else body
+
+
+def _measured(body: ContactField, volume: RockVolume) -> tuple[float, float, float]:
+    """Return what the triangles miss of the voxels in boxes of the sample, as a share and in m3, and their area, m2."""
+    wanted = missing = area = 0.0
+    for first, last in _boxes(body, volume):
+        voxels = volume.pore[_within(first, last)]
+        low, high = np.multiply(first, volume.voxel), np.multiply(last, volume.voxel)
+        mesh = mesh_in_box(body, low, high, body.cell * volume.unit, slivers=True)
+        true = np.count_nonzero(voxels) * float(np.prod(volume.voxel))
+        wanted += true
+        missing += true - mesh.volume
+        area += float(mesh.areas.sum())
+    return missing / wanted if wanted else 0.0, missing, area
+
+
+def _boxes(body: ContactField, volume: RockVolume) -> list[tuple[Ints, Ints]]:
+    """Return the first and the end of the voxels of a few boxes of the sample, which all have about as many cells."""
+    edge = int(BOX * body.cell)
+    firsts = np.array(list(itertools.product(*(range(0, n, edge) for n in volume.shape))))
+    lasts = np.minimum(firsts + edge, volume.shape)
+    few = np.arange(len(firsts))
+    if len(few) > BOXES:
+        few = np.random.default_rng(len(few)).choice(len(few), BOXES, replace=False)
+    if body.cell < 1 or not any(volume.pore[_within(firsts[k], lasts[k])].any() for k in few):
+        # Narrow channels may be rare: chosen are boxes that have some, or a neighbour whose surface bulges into them.
+        near = [volume.pore[_within(np.maximum(a - 1, 0), b + 1)].any() for a, b in zip(firsts, lasts, strict=True)]
+        few = np.flatnonzero(near)
+        few = np.random.default_rng(len(few)).permutation(few)[: BOXES // 2]
+    return [(firsts[k], lasts[k]) for k in few]
+
+
+def _within(first: Ints, last: Ints) -> tuple[slice, ...]:
+    return tuple(slice(a, b) for a, b in zip(first.tolist(), last.tolist(), strict=True))
 
 
 def _beside_wall(pore: NDArray[np.bool_]) -> NDArray[np.bool_]:

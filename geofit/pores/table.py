@@ -36,7 +36,7 @@ class PoreFigures:
     kozeny : float
         Kozeny's permeability, square metres: an upper bound, since it ignores how pores are connected.
     network, laplace : Permeability or None
-        Along the three axes; None where it was not asked for.
+        Along the three axes; None where it was not asked for, or all voxels are pore.
     """
 
     connectivity: Connectivity
@@ -122,6 +122,6 @@ def _figures(volume: RockVolume, network: PoreNetwork, laplace: bool) -> PoreFig
         specific,
         grain,
         kozeny_permeability(found.connected, grain, CARMAN) if phi < 1 and specific > 0 else float("inf"),
-        network_permeability(network),
+        network_permeability(network) if phi < 1 else None,
         laplace_permeability(volume) if laplace else None,
     )

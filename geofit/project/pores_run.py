@@ -12,6 +12,7 @@ from geofit.data.progress import Progress, tell, within
 from geofit.project.body_files import write_figures, write_triangles
 
 if TYPE_CHECKING:
+    from geofit.data.messages import Message
     from geofit.pores.balls import MaximalBalls
     from geofit.pores.network import PoreNetwork
     from geofit.pores.permeability import Permeability
@@ -37,6 +38,13 @@ class PoresRun:
     surface: PoreSurface | None
     table: BeforeAfter | None
     files: tuple[Path, ...]
+
+    @property
+    def surface_note(self) -> Message | None:
+        """What the triangles of the surface have more or less than the voxels of the network, if it is much."""
+        from geofit.pores.surface import volume_note
+
+        return None if self.surface is None else volume_note(self.surface.porosity, self.network.porosity)
 
     def figures(self) -> dict[str, Any]:
         """Return everything that the JSON file has, as plain data; lengths in metres."""

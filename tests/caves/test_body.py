@@ -117,6 +117,28 @@ def test_a_flat_or_eccentric_section_has_its_volume_in_any_direction(direction):
         assert body.volume() == pytest.approx(body.sweeps.volumes[0], rel=0.01)
 
 
+@pytest.mark.parametrize("direction", [(1, 0, 0), (1, 1, 0), (0.9, 0.1, 0.3)])
+@pytest.mark.parametrize("walls", [[0.15, 0.15, 10.0, 10.0], [8.0, 8.0, 0.2, 0.2]])
+def test_a_slot_has_its_volume_at_the_cost_of_its_walls(monkeypatch, direction, walls):
+    """A slot fills little of the box round its height, and cells by its width would be millions along its walls."""
+    sizes = []
+
+    def counted(sweeps, blend, boxes, origin, spacing, shape):
+        sizes.append((np.prod(shape), spacing))
+        return paint_sweeps(sweeps, blend, boxes, origin, spacing, shape)
+
+    monkeypatch.setattr("geofit.caves.columns.paint_sweeps", counted)
+    shots = ShotList(across=True, fixed={"a": (0.3, 0.1, 0.7)})
+    shot = shots.add("a", "b", 25 * np.array(direction) / np.linalg.norm(direction), 0)
+    shots.add_walls("a", shot, walls)
+    shots.add_walls("b", shot, walls)
+    body = centreline_body(shots.survey("slot"), ends="flat")
+    assert body.volume() == pytest.approx(body.sweeps.volumes[0], rel=0.002)
+    assert max(spacing for _, spacing in sizes) <= 3 * body.fine
+    low, high = body.bounds
+    assert sum(nodes for nodes, _ in sizes) < 0.1 * np.prod((high - low) / body.fine)
+
+
 def test_slabs_of_any_size_add_up_to_the_same_volume(monkeypatch):
     body = centreline_body(branching(3)[0])
     whole = body.volume(0.5)

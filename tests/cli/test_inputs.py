@@ -115,3 +115,12 @@ def test_outside_a_run_a_file_that_was_read_may_be_saved(tmp_path):
                 part.write_text("lost")
             assert caught.value.code == "data.output-is-input"
     assert file.read_text() == "saved"
+
+
+@pytest.mark.parametrize("name", ["out", "out/", "site.txt"])
+def test_an_import_writes_a_site_file_that_fit_reads_as_one(name, tmp_path, monkeypatch, capsys):
+    source = table(tmp_path / "picks.csv")
+    code, err = run(monkeypatch, capsys, "import", source, "--site", f"{tmp_path}/{name}")
+    assert (code, [path.name for path in tmp_path.iterdir()]) == (2, ["picks.csv"])
+    assert "must end in .toml" in err
+    assert "site.toml" in err

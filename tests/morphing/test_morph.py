@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from refusals import refused
 
 import geofit
 import geofit.implicit as implicit
@@ -322,3 +323,31 @@ def test_bodies_of_other_coordinates_are_refused() -> None:
     with pytest.raises(MorphError) as caught:
         geofit.morph(implicit.Sphere([0, 0, 0], 5.0), implicit.Sphere([500_000, 3_100_000, 0], 5.0), cells=24)
     assert caught.value.code == "morphing.bodies-far-apart"
+
+
+def box_mesh(lower: tuple[float, float, float], upper: tuple[float, float, float]) -> implicit.TriangleMesh:
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+    faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    triangles = [three for a, b, c, d in faces for three in ((a, b, c), (a, c, d))]
+    return implicit.TriangleMesh(np.array(lower) + corners * np.subtract(upper, lower), np.array(triangles))
+
+
+def joined(*meshes: implicit.TriangleMesh) -> implicit.TriangleMesh:
+    counts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    triangles = [mesh.triangles + first for mesh, first in zip(meshes, counts, strict=False)]
+    return implicit.TriangleMesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles))
+
+
+def test_a_cavity_is_not_a_part() -> None:
+    block, hollow = box_mesh((0, 0, 0), (40, 30, 20)), box_mesh((10, 10, 5), (30, 20, 15))
+    cavity = implicit.TriangleMesh(hollow.vertices, hollow.triangles[:, ::-1])
+    m = geofit.morph(block, joined(block, cavity), cells=32)
+    assert [row.components for row in m.table(3)] == [1, 1, 1]
+    assert [(event.components, event.euler) for event in m.events] == [((1, 1), (2, 4))]
+
+
+def test_overlapping_parts_without_a_front_are_refused(recwarn: pytest.WarningsRecorder) -> None:
+    block = box_mesh((0, 0, 0), (40, 30, 20))
+    with refused(MorphError, "morphing.front-unbounded", earlier=1, later=2):
+        geofit.morph(block, joined(block, box_mesh((20, 0, 0), (60, 30, 20))), cells=48)
+    assert not recwarn.list

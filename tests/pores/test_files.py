@@ -139,3 +139,22 @@ def test_a_volume_of_pore_only_is_refused_before_any_computation(tmp_path, recwa
         run_pores(volume, tmp_path / "out", "all")
     assert not (tmp_path / "out").exists()
     assert not recwarn.list
+
+
+def test_a_surface_without_the_volume_of_the_voxels_is_reported(monkeypatch, tmp_path):
+    line = np.zeros((18, 15, 15), bool)
+    line[:, 7, 7] = True
+    run = run_pores(RockVolume(line, pore=True, voxel=1e-6), tmp_path / "line", "line")
+    assert (tmp_path / "line" / "line_surface.stl").exists()
+    assert run.surface_note is None
+    # Where smaller cells are too many, cells of a voxel see only where the channels widen.
+    monkeypatch.setattr("geofit.pores.surface.MOST_CELLS", 0)
+    widened = line.copy()
+    widened[:, 3, 7] = widened[9:14, 6:9, 6:9] = True
+    run = run_pores(RockVolume(widened, pore=True, voxel=1e-6), tmp_path / "widened", "widened")
+    assert run.surface_note.code == "pores.surface-volume-off"
+    change = run.surface.triangulate().volume / (np.count_nonzero(widened) * 1e-18) - 1
+    assert run.surface_note.params["change"] == pytest.approx(change)
+    run = run_pores(RockVolume(line, pore=True, voxel=1e-6), tmp_path / "missed", "missed")
+    assert not list((tmp_path / "missed").glob("*.stl"))
+    assert run.surface_note.code == "pores.no-surface"

@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from refusals import refused
 from shapes import pack
 
 from geofit.pores import (
     RockVolume,
+    VolumeError,
     kozeny_permeability,
     kozeny_ratio,
     laplace_permeability,
@@ -21,6 +23,13 @@ def volume_of(pore):
 
 def network_k(pore):
     return network_permeability(pore_network(volume_of(pore))).square_metres
+
+
+def test_a_network_of_pore_only_is_refused(recwarn):
+    network = pore_network(volume_of(np.ones((6, 7, 8), bool)))
+    with refused(VolumeError, "pores.no-rock", shape=(6, 7, 8)):
+        network_permeability(network)
+    assert not recwarn.list
 
 
 def disc(radius, offset):

@@ -133,6 +133,23 @@ def test_meshes_end_at_the_faces_of_the_sample(shape, voxel, spacing):
     assert body.porosity == pytest.approx(volume.porosity, rel=0.01)
 
 
+def test_channels_one_voxel_wide_keep_their_volume_and_their_way_through():
+    line = np.zeros((18, 15, 15), bool)
+    line[:, 7, 7] = True
+    checkers = np.indices((8, 9, 10)).sum(axis=0) % 2 == 0
+    for pore in (line, checkers):
+        volume = RockVolume(pore, pore=True, voxel=1e-6)
+        network = pore_network(volume)
+        body = pore_surface(volume, network)
+        assert body.overview_spacing < body.spacing
+        mesh = body.triangulate()
+        assert mesh.is_closed
+        assert body.porosity == pytest.approx(network.porosity, rel=0.05)
+        if pore is line:
+            assert mesh.components == 1
+            assert np.ptp(mesh.vertices[:, 0]) == pytest.approx(18e-6)
+
+
 def test_wrong_parameters_are_errors(berea):
     volume, network = berea
     with pytest.raises(VolumeError, match="contact"):
