@@ -11,6 +11,7 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
+from geofit.data.errors import GeofitError
 from geofit.data.messages import message
 from geofit.gui.translate import shown_error
 from geofit.gui.worker import Task, run, run_in_process
@@ -84,9 +85,12 @@ class Activity(QObject):
 
     def cancel(self) -> None:
         """Stop what runs, and forget what waits."""
+        waited = bool(self._waiting)
         self._waiting.clear()
         if self._task is not None:
             self._task.cancel()
+        elif waited:
+            self.ended.emit()
 
     def fail(self, title: str, error: Exception) -> None:
         """Log a failure, and report it by the signal."""
@@ -96,7 +100,14 @@ class Activity(QObject):
     def _next(self) -> None:
         while self._waiting:
             job = self._waiting.popleft()
-            work = job.prepare()
+            failed = job.on_failed or partial(self.fail, job.title)
+            try:
+                work = job.prepare()
+            except Exception as error:  # those that wait must have their turn, whatever this one lacks
+                if not isinstance(error, GeofitError):
+                    _LOG.exception(message("gui.log-task-failed", "{task} failed", task=job.title))
+                failed(error)
+                continue
             if work is None:
                 continue
             start = run_in_process if job.in_process else run
@@ -106,7 +117,7 @@ class Activity(QObject):
                 *work[1],
                 title=job.title,
                 on_done=job.on_done,
-                on_failed=job.on_failed or partial(self.fail, job.title),
+                on_failed=failed,
                 on_progress=self.progressed.emit,
                 on_cancelled=partial(_LOG.info, message("gui.log-stopped", "Stopped: {task}", task=job.title)),
             )

@@ -46,6 +46,7 @@ from geofit.project.body_record import (
 from geofit.project.body_saving import largest_difference
 from geofit.project.body_sources import outline_layers, site_codes
 from geofit.project.horizon_body import needed_horizons
+from geofit.project.horizon_edits import HorizonEdit, present_body, present_provenance
 from geofit.project.provenance import Provenance
 from geofit.project.staleness import dated_body
 from geofit.project.step_files import Signed, certificate_of
@@ -79,6 +80,8 @@ class Bodies(QObject):
         self._running = False
         #: From what the horizons are made that the task under way divides a body by.
         self._using: dict[str, Provenance] = {}
+        #: How horizons had been renamed, merged and removed when it began.
+        self._edits: tuple[HorizonEdit, ...] = ()
         panel = workspace.bodies
         panel.fit_requested.connect(self.fit)
         panel.stop_requested.connect(activity.cancel)
@@ -104,11 +107,13 @@ class Bodies(QObject):
             name = " + ".join(source.codes) if isinstance(source, Intervals) else Path(getattr(source, "file", "")).stem
             name = _free(name, self._document.state.bodies)
         self.showing.chosen = name
+        state = self._document.state
+        existed, edits = name in state.bodies, state.horizons
         title = self.tr("Fit body {name}").format(name=name)
         self._activity.prepare(
             title,
-            lambda: self._work(name, source, settings),
-            on_done=lambda done: self._fitted(name, *done),
+            lambda: self._work(name, BodyProvenance(source, settings), existed, edits),
+            on_done=lambda done: self._fitted(name, existed, *done),
             in_process=True,
         )
 
@@ -158,10 +163,27 @@ class Bodies(QObject):
         offers = site_codes if kind == OTHER else outline_layers
         self._activity.do(title, offers, file, on_done=lambda names: source.show_file(kind, relative, names))
 
-    def _work(self, name: str, source: BodySource, settings: BodySettings) -> Work:
+    def _work(self, name: str, wanted: BodyProvenance, existed: bool, edits: tuple[HorizonEdit, ...]) -> Work:
+        if self._is_gone(name, existed):
+            return None
         self._running = True
         self._panels.bodies.set_running(True)
-        return made_body, self._inputs(name, source, settings)
+        now = present_body(wanted, edits, self._document.state.horizons)
+        return made_body, self._inputs(name, now.source, now.settings)
+
+    def _is_gone(self, name: str, existed: bool) -> bool:
+        """Whether a body that was there is not any more; then what is made for it is discarded, which is said."""
+        gone = existed and name not in self._document.state.bodies
+        if gone:
+            text = message(
+                "gui.body-gone-meanwhile",
+                "Body {name} was renamed or deleted while it was to be fitted: the result was discarded.",
+                name=name,
+            )
+            _LOG.warning(text)
+            self.reported.emit(translated(text))
+            self.showing.renew()
+        return gone
 
     def _inputs(self, name: str, source: BodySource, settings: BodySettings) -> tuple[object, ...]:
         document, horizons = self._document, self._horizons()
@@ -169,15 +191,17 @@ class Bodies(QObject):
         return source, settings, name, document.site.boreholes, folder, horizons
 
     def _horizons(self) -> dict[str, HorizonFit]:
-        self._using = self.showing.horizons()
+        self._using, self._edits = self.showing.horizons(), self._document.state.horizons
         return {name: surface.with_(model=None) for name, surface in self._document.surfaces().items()}
 
     def _put(self, provenance: BodyProvenance, result: BodyResult) -> None:
         self.showing.divided[provenance] = self._using
         self._document.put_body(provenance, result)
 
-    def _fitted(self, name: str, provenance: BodyProvenance, result: BodyResult) -> None:
-        document = self._document
+    def _fitted(self, name: str, existed: bool, made: BodyProvenance, result: BodyResult) -> None:
+        if self._is_gone(name, existed):
+            return
+        document, provenance = self._document, self._renamed(made)
         known = document.state.bodies.get(name)
         document.sources.made(provenance, self._using)
         self._put(provenance, result)
@@ -201,6 +225,14 @@ class Bodies(QObject):
             )
         _LOG.info(text)
         self.reported.emit(translated(text))
+
+    def _renamed(self, made: BodyProvenance) -> BodyProvenance:
+        """Return what the task made as it is called now, and call the horizons that it used so."""
+        edits, now = self._edits, self._document.state.horizons
+        present = [present_provenance(one, edits, now) for one in self._using.values()]
+        self._using = {one.horizon: one for one in present if one is not None}
+        self._edits = now
+        return present_body(made, edits, now)
 
     def _make_missing(self) -> None:
         """Make the bodies again that the document wants and has not, or only as its file holds them."""
@@ -234,8 +266,10 @@ class Bodies(QObject):
             in_process=True,
         )
 
-    def _made_again(self, name: str, wanted: BodyProvenance, made: BodyProvenance, result: BodyResult) -> None:
-        self._pending.discard(wanted)
+    def _made_again(self, name: str, asked: BodyProvenance, again: BodyProvenance, result: BodyResult) -> None:
+        self._pending.discard(asked)
+        wanted = present_body(asked, self._edits, self._document.state.horizons)
+        made = self._renamed(again)
         self._document.sources.made(made, self._using)
         if made != wanted:
             self._lost(name, wanted, None)

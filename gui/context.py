@@ -14,6 +14,7 @@ from geofit.data.messages import Message
 from geofit.gui.actions import Actions
 from geofit.gui.fitting import Fitting
 from geofit.gui.lengths import in_lengths
+from geofit.gui.names import literal
 from geofit.gui.panels.curtain import site_extent
 from geofit.gui.selecting import Selecting
 from geofit.gui.translate import translated
@@ -59,7 +60,7 @@ class ContextMenus(QObject):
             for name in ("home", "top", "clip", "measure"):
                 menu.addAction(self._actions[name])
             return menu
-        head = menu.addAction(self.words(hit).split("\n", 1)[0])
+        head = menu.addAction(literal(self.words(hit).split("\n", 1)[0]))
         head.setEnabled(False)
         menu.addSeparator()
         if hit.layer.kind == "points":
@@ -108,7 +109,7 @@ class ContextMenus(QObject):
         merge = menu.addMenu(self.tr("Merge with"))
         for other in document.horizons:
             if other != name:
-                merge.addAction(other).triggered.connect(lambda _=False, other=other: self._merge(name, other))
+                merge.addAction(literal(other)).triggered.connect(lambda _=False, other=other: self._merge(name, other))
         remove = self._add(menu, self.tr("Remove from the site"), lambda: self._remove(name))
         remove.setEnabled(len(document.horizons) > 1)
         menu.addSeparator()
@@ -188,6 +189,7 @@ class ContextMenus(QObject):
     def _properties(self, words: str) -> None:
         box = QMessageBox(self._window)
         box.setWindowTitle(self.tr("Properties"))
+        box.setTextFormat(Qt.TextFormat.PlainText)
         box.setText(words)
         box.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         box.exec()

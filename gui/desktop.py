@@ -107,6 +107,7 @@ class Desktop(QObject):
             return
         self.preferences.language = code
         apply_language(code)
+        self.session.name_steps()
         self._renew()
 
     def change_lengths(self, unit: str) -> None:

@@ -55,6 +55,11 @@ class Delivering(QObject):
         self._panels, self._showing, self._window = workspace, showing, window
         self._reports: list[str] = []
         workspace.tree.report_chosen.connect(lambda path: QDesktopServices.openUrl(QUrl.fromLocalFile(path)))
+        document.site_opened.connect(self._forget_reports)
+
+    def close(self) -> None:
+        """Listen no more; the document may live longer than the window."""
+        self._document.site_opened.disconnect(self._forget_reports)
 
     def take_over(self, other: Delivering) -> None:
         """List the reports that another window has written."""
@@ -177,6 +182,11 @@ class Delivering(QObject):
         self._reports.append(str(path))
         _LOG.info(message("gui.log-file-written", "Wrote {file}", file=str(Path(str(path)).resolve())))
         self.reported.emit(self.tr("Wrote {names}.").format(names=Path(str(path)).resolve()))
+        self._panels.tree.show_reports(self._reports)
+
+    def _forget_reports(self) -> None:
+        """Those of the former site are none of the next one."""
+        self._reports = []
         self._panels.tree.show_reports(self._reports)
 
     def screenshot(self) -> None:

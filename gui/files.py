@@ -26,6 +26,7 @@ from geofit.io.project import ENDING, Project, is_project
 from geofit.io.project_files import sha256_of
 from geofit.io.survey_kinds import SURVEY_ENDINGS, is_survey
 from geofit.project.body_saving import saved_body
+from geofit.project.horizon_edits import HorizonEdit, present_provenance
 from geofit.project.journal import Unfinished, unfinished
 from geofit.project.provenance import Provenance
 from geofit.project.saving import (
@@ -360,7 +361,7 @@ class Files(QObject):
                     found.project,
                     path.parent,
                     blocks_site,
-                    on_done=partial(self._surfaces_read, found.project),
+                    on_done=partial(self._surfaces_read, found.project, self._document.state.horizons),
                     in_process=True,
                 )
         errors, doubts = (sum(issue.severity == word for issue in site.issues) for word in ("error", "warning"))
@@ -389,7 +390,9 @@ class Files(QObject):
             )
         )
 
-    def _surfaces_read(self, project: Project, surfaces: dict[Provenance, HorizonFit]) -> None:
+    def _surfaces_read(
+        self, project: Project, edits: tuple[HorizonEdit, ...], surfaces: dict[Provenance, HorizonFit]
+    ) -> None:
         for result in project.results:
             if result.provenance and Provenance.from_data(result.provenance) not in surfaces:
                 _LOG.warning(
@@ -400,9 +403,11 @@ class Files(QObject):
                         file=Untranslated(result.surface),
                     )
                 )
-        for provenance, surface in surfaces.items():
-            self._document.put(provenance, surface)
-        self._fitting.complete(tuple(surfaces))
+        # Horizons may have been renamed meanwhile; one that was removed may come back.
+        now = {present_provenance(one, edits, self._document.state.horizons) or one: one for one in surfaces}
+        for provenance, saved in now.items():
+            self._document.put(provenance, surfaces[saved])
+        self._fitting.complete([provenance for provenance in now if provenance.horizon in self._document.horizons])
         self._fitting.make_missing()
         self._list_lost()
 

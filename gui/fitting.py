@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
 from geofit.data.accuracy import Accuracy
-from geofit.data.messages import message
+from geofit.data.messages import Untranslated, message
 from geofit.data.prediction import PredictionResult
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
@@ -31,6 +32,7 @@ from geofit.project.commands import (
     SplitAtFaults,
 )
 from geofit.project.fault_blocks import SplitHorizon, cuts_measured, split_at_faults
+from geofit.project.horizon_edits import HorizonEdit, present_name, present_provenance
 from geofit.project.provenance import Corners, DocumentError, Move, Provenance, Row
 from geofit.site.throw import FaultCut
 
@@ -55,6 +57,8 @@ class Fitting(QObject):
         super().__init__(parent)
         self._session, self._activity = session, activity
         self._document = session.document
+        #: How horizons were renamed, merged and removed when the task under way began: its result has these names.
+        self._edits: tuple[HorizonEdit, ...] = ()
         for listener in (self._make_missing, self._measure_throw):
             self._document.result_changed.connect(listener)
 
@@ -64,12 +68,16 @@ class Fitting(QObject):
             self._document.result_changed.disconnect(listener)
 
     def fit(self, name: str) -> None:
-        """Fit a horizon with its present settings and rows.
+        """Fit a horizon with its present settings and rows; make it again as it was, where that was stopped.
 
         One that faults cut is split at them first, and all its blocks are fitted.
         """
-        if self._document.needs_split(name):
-            self._part(self._document.whole(name))
+        document = self._document
+        stopped = [one for one in document.missing() if one.horizon == name and not document.stale(name)]
+        if document.needs_split(name):
+            self._part(document.whole(name))
+        elif stopped:
+            self._make_again(stopped[0])
         else:
             self._fit(name)
 
@@ -85,23 +93,32 @@ class Fitting(QObject):
                 self._part(name)
 
     def _fit(self, name: str) -> None:
-        title = self.tr("Fit {name}").format(name=name)
+        title, edits = self.tr("Fit {name}").format(name=name), self._document.state.horizons
         self._activity.prepare(
-            title, lambda: self._fit_work(name), on_done=lambda done: self._fitted(*done), in_process=True
+            title, lambda: self._fit_work(name, edits), on_done=lambda done: self._fitted(*done), in_process=True
         )
 
     def _part(self, whole: str) -> None:
         """Part a horizon at its faults, then fit its blocks."""
-        title = self.tr("Split {name} at its faults").format(name=whole)
-        self._activity.prepare(title, lambda: self._part_work(whole), on_done=self._split_done, in_process=True)
+        title, edits = self.tr("Split {name} at its faults").format(name=whole), self._document.state.horizons
+        self._activity.prepare(title, lambda: self._part_work(whole, edits), on_done=self._split_done, in_process=True)
 
-    def _part_work(self, whole: str) -> Work:
-        document = self._document
+    def _part_work(self, name: str, edits: tuple[HorizonEdit, ...]) -> Work:
+        document, whole = self._document, self._begin(name, edits)
+        if whole is None:
+            return None
         given, left_out = document.inputs_for_blocks(whole)
         return split_at_faults, (whole, document.faults(whole), left_out, given, document.given(whole))
 
     def _split_done(self, found: SplitHorizon) -> None:
         document = self._document
+        name = self._present(found.horizon)
+        if name is None:
+            return
+        if self._edits != document.state.horizons:
+            # Blocks are called after their horizon and know their faults by name.
+            self._part(name)
+            return
         for note in found.notes:
             _LOG.log(logging.INFO if note.severity == "info" else logging.WARNING, note)
         for provenance, surface in found.faults.items():
@@ -139,8 +156,8 @@ class Fitting(QObject):
 
     def examine(self, name: str) -> None:
         """Find the prediction error of a surface away from its data."""
-        title = self.tr("Examine {name} away from its data").format(name=name)
-        self._activity.prepare(title, lambda: self._examine_work(name), on_done=self._examined, in_process=True)
+        title, edits = self.tr("Examine {name} away from its data").format(name=name), self._document.state.horizons
+        self._activity.prepare(title, lambda: self._examine_work(name, edits), on_done=self._examined, in_process=True)
 
     def adjust(self, name: str, move: Move) -> None:
         """Move a control point."""
@@ -207,18 +224,59 @@ class Fitting(QObject):
     def _needs_fit(self, name: str) -> bool:
         return self._document.surface(name) is None or self._document.stale(name)
 
-    def _fit_work(self, name: str) -> Work:
-        provenance = self._document.provenance(name)
+    def _begin(self, name: str, edits: tuple[HorizonEdit, ...]) -> str | None:
+        """Begin a task for a horizon that was called so after ``edits``; return its present name, None if gone."""
+        self._edits = edits
+        now = self._present(name)
+        self._edits = self._document.state.horizons
+        return now
+
+    def _present(self, name: str) -> str | None:
+        """Return how a horizon of the task is called now; None, and say so, if it is gone."""
+        now = present_name(name, self._edits, self._document.state.horizons)
+        if now is None:
+            self._drop(name)
+        return now
+
+    def _drop(self, name: str) -> None:
+        text = message(
+            "gui.horizon-gone-meanwhile",
+            "'{name}' is no longer among the horizons: what was under way for it was discarded.",
+            name=Untranslated(name),
+        )
+        _LOG.warning(text)
+        self.reported.emit(translated(text))
+
+    def _renamed(self, provenance: Provenance) -> Provenance | None:
+        """Return a provenance of the task with present names; None, and say so, if its horizon is gone."""
+        now = present_provenance(provenance, self._edits, self._document.state.horizons)
+        if now is None:
+            self._drop(provenance.horizon)
+        return now
+
+    def _fit_work(self, name: str, edits: tuple[HorizonEdit, ...]) -> Work:
+        now = self._begin(name, edits)
+        if now is None:
+            return None
+        provenance = self._document.provenance(now)
         surface = self._document.shelf.surface(provenance)
         if surface is not None and surface.model is not None:
             self._fitted(provenance, surface)
             return None
         return made, (provenance, self._document.given_for(provenance))
 
-    def _fitted(self, provenance: Provenance, surface: HorizonFit) -> None:
+    def _fitted(self, made_from: Provenance, surface: HorizonFit) -> None:
+        provenance = self._renamed(made_from)
+        if provenance is None:
+            return
         self._document.put(provenance, surface)
         if self._document.state.provenances.get(provenance.horizon) != provenance:
             self.push(SetSurface(provenance))
+
+    def _put(self, made_from: Provenance, surface: HorizonFit) -> None:
+        provenance = self._renamed(made_from)
+        if provenance is not None:
+            self._document.put(provenance, surface)
 
     def _make_missing(self, name: str) -> None:
         for provenance in self._document.missing():
@@ -228,11 +286,12 @@ class Fitting(QObject):
     def _make_again(self, provenance: Provenance) -> None:
         title = self.tr("Make {name} again").format(name=provenance.horizon)
         self._activity.prepare(
-            title, lambda: self._again_work(provenance), on_done=lambda done: self._document.put(*done), in_process=True
+            title, lambda: self._again_work(provenance), on_done=lambda done: self._put(*done), in_process=True
         )
 
     def _again_work(self, provenance: Provenance) -> Work:
         """Undone or closed in the meantime, or put on the shelf by somebody else: then there is nothing to do."""
+        self._edits = self._document.state.horizons
         wanted = self._document.state.provenances.get(provenance.horizon) == provenance
         surface = self._document.shelf.surface(provenance)
         if not wanted or (surface is not None and surface.model is not None):
@@ -246,21 +305,27 @@ class Fitting(QObject):
                 self._make_again(provenance)
 
     def _edit(self, command: AdjustControlPoint | MoveToPoint | ChangeWeight) -> None:
+        edits = self._document.state.horizons
         self._activity.prepare(
             translated(command.text),
-            lambda: self._edit_work(command),
+            lambda: self._edit_work(command, edits),
             on_done=lambda done: self._edited(command, *done),
             in_process=True,
         )
 
-    def _edit_work(self, command: AdjustControlPoint | MoveToPoint | ChangeWeight) -> Work:
-        provenance = self._document.state.provenances.get(command.horizon)
+    def _edit_work(
+        self, command: AdjustControlPoint | MoveToPoint | ChangeWeight, edits: tuple[HorizonEdit, ...]
+    ) -> Work:
+        name = self._begin(command.horizon, edits)
+        if name is None:
+            return None
+        provenance = self._document.state.provenances.get(name)
         surface = self._document.shelf.surface(provenance)
         if provenance is None or surface is None:
             text = message(
                 "data.no-surface-to-adjust",
                 "'{name}' has no surface to adjust. Fit it first.",
-                name=command.horizon,
+                name=name,
             )
             self.refused.emit(DocumentError(text))
             return None
@@ -268,15 +333,24 @@ class Fitting(QObject):
             text = message(
                 "gui.surface-data-changed",
                 "'{name}' was read from a file, and its data have changed since. Fit it again, then adjust.",
-                name=command.horizon,
+                name=name,
             )
             self.refused.emit(DocumentError(text))
             return None
         return changed, (provenance, surface, command.edit, self._document.given_for(provenance))
 
     def _edited(
-        self, command: Command, former: Provenance, provenance: Provenance, before: Accuracy, surface: HorizonFit
+        self,
+        command: AdjustControlPoint | MoveToPoint | ChangeWeight,
+        made_from: Provenance,
+        _: Provenance,
+        before: Accuracy,
+        surface: HorizonFit,
     ) -> None:
+        former = self._renamed(made_from)
+        if former is None:
+            return
+        provenance = replace(former, edits=(*former.edits, command.edit))
         if self._document.state.provenances.get(former.horizon) != former:
             self.refused.emit(
                 DocumentError(
@@ -288,10 +362,13 @@ class Fitting(QObject):
             )
             return
         self._document.put(provenance, surface)
-        self.push(command)
+        self.push(replace(command, horizon=former.horizon))
         self.adjusted.emit(before, surface.accuracy)
 
-    def _examine_work(self, name: str) -> Work:
+    def _examine_work(self, horizon: str, edits: tuple[HorizonEdit, ...]) -> Work:
+        name = self._begin(horizon, edits)
+        if name is None:
+            return None
         provenance = self._document.state.provenances.get(name)
         surface = self._document.shelf.surface(provenance)
         if provenance is None or surface is None:
@@ -301,4 +378,6 @@ class Fitting(QObject):
         return examined, (provenance, surface)
 
     def _examined(self, found: tuple[Provenance, PredictionResult]) -> None:
-        self._document.put_prediction(*found)
+        provenance = self._renamed(found[0])
+        if provenance is not None:
+            self._document.put_prediction(provenance, found[1])

@@ -24,6 +24,8 @@ _PLACES = (
 )
 #: Width of the docks at the left and at the right at first, and height of those below, as shares of the window's.
 _LEFT, _RIGHT, _BELOW = 0.156, 0.184, 0.36
+#: Pixels at the left that tell names of horizons apart, where so many are left for the rest of the window.
+_NAMES, _REST = 240, 1080
 
 
 class Layout(QObject):
@@ -118,7 +120,8 @@ class Layout(QObject):
                     window.addDockWidget(area, docks[name])
             docks[names[0]].raise_()
         width = window.width()
-        sides = [round(_LEFT * width), round(_RIGHT * width)]
+        left = max(_LEFT * width, min(_NAMES, width - _REST))
+        sides = [round(left), round(_RIGHT * width)]
         window.resizeDocks([docks["tree"], docks["fit"]], sides, Qt.Orientation.Horizontal)
         self._hide_lost_tabs()
         self._unfolded = set(BOTTOM)

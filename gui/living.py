@@ -224,7 +224,8 @@ class Living(QObject):
         if name is None or before is None or earlier is None:
             panel.show_nothing(self._lost)
             return
-        whole = document.whole(name)
+        # The data have the names of their files.
+        whole, before = document.whole(name), document.state.shaped(before)
         came = arrivals(whole, before.horizons[whole], document.read.horizons[whole])
         panel.show_state(
             name, came, self._lost, document.comparison(name), waiting=document.compared_pair(name) is None

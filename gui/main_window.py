@@ -135,6 +135,10 @@ class MainWindow(QMainWindow):
         self.living.take_over(other.living)
         self.showing.take_over(other.showing)
         self.delivering.take_over(other.delivering)
+        self.panels.view.take_over(other.panels.view)
+        self._choose_in(self.actions_.exaggerations, self.panels.view.canvas.stretch)
+        for name in ("orthographic", "faded", "section"):
+            self.actions_[name].setChecked(other.actions_[name].isChecked())
 
     def check_language(self) -> None:
         """Mark the language of the window in its menu."""
@@ -158,7 +162,7 @@ class MainWindow(QMainWindow):
         finish_all(helpers=False)
         for part in (
             self.comparing_fits, self.showing, self.selecting, self.fitting, self.living, self.bodies, self.morphing,
-            self.surveys,
+            self.surveys, self.delivering,
         ):  # fmt: skip
             part.close()
         for end in self._ends:
@@ -311,6 +315,7 @@ class MainWindow(QMainWindow):
         self.activity.ended.connect(self.showing.renew)
         for refusing in (self.fitting, self.delivering, self.ordering, self.bodies, self.morphing):
             refusing.refused.connect(lambda error: self.fail("", error))
+        self.panels.start.refused.connect(lambda error: self.fail("", error))
         self.showing.drawing.failed.connect(lambda error: self.fail(self.tr("Drawing"), error))
         for part in (
             self.files, self.delivering, self.ordering, self.fitting, self.living, self.bodies, self.morphing,
@@ -325,6 +330,7 @@ class MainWindow(QMainWindow):
         self.session.recorded.connect(self.tell)
         self._ends: list[Callable[[], None]] = []
         for signal, listener in (
+            (document.site_opened, lambda: self.actions_["section"].setChecked(False)),
             (document.site_changed, self._on_site),
             (document.saved_changed, self._show_title),
             (document.name_changed, self._show_title),
@@ -343,7 +349,6 @@ class MainWindow(QMainWindow):
         self._show_recent()
         self._show_title()
         self._enable()
-        self.actions_["section"].setChecked(False)
         self.statusBar().clearMessage()
 
     def _show_title(self) -> None:
@@ -389,8 +394,10 @@ class MainWindow(QMainWindow):
         return with_chosen
 
     def _switch_section(self, on: bool) -> None:
-        if on:
+        if on and self.isVisible():
+            # A window that takes over from another one shows the panels that it restores.
             self.panels.reveal("section")
+        if on:
             self.showing.begin_section()
         self.panels.view.set_section(self.showing.line if on else None, self.showing.thickness)
 

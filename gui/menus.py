@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QMainWindow, QMenu, QSizePolicy, QToolBar, QWidget
 
 from geofit.gui.actions import Actions
 from geofit.gui.icons import palette_icon
+from geofit.gui.names import literal
 from geofit.gui.translate import bare
 
 __all__ = ["Menus"]
@@ -73,11 +74,11 @@ class Menus(QObject):
         self._name_redo(stack.redoText())
 
     def _name_undo(self, step: str) -> None:
-        named = self.tr("&Undo {step}").format(step=step.replace("&", "&&"))
+        named = self.tr("&Undo {step}").format(step=literal(step))
         self.undo.setText(named if step else self.tr("&Undo"))
 
     def _name_redo(self, step: str) -> None:
-        named = self.tr("&Redo {step}").format(step=step.replace("&", "&&"))
+        named = self.tr("&Redo {step}").format(step=literal(step))
         self.redo.setText(named if step else self.tr("&Redo"))
 
     def draw_icons(self) -> None:
@@ -90,7 +91,7 @@ class Menus(QObject):
         self.recent.clear()
         self.recent.setEnabled(bool(files))
         for number, file in enumerate(files, 1):
-            name = f"{file.parent.name}/{file.name}".replace("&", "&&")
+            name = literal(f"{file.parent.name}/{file.name}")
             action = self.recent.addAction(f"&{number % 10} {name}")
             action.setToolTip(str(file))
             action.triggered.connect(lambda _=False, file=file: choose(file))

@@ -1,10 +1,10 @@
-"""Long names in a panel that is narrower than they are."""
+"""Names as widgets show them: long ones in narrow panels, and signs that Qt takes for something else."""
 
 from __future__ import annotations
 
 import re
 
-__all__ = ["breakable"]
+__all__ = ["breakable", "literal"]
 
 #: A longer word may be broken, at one of these signs or after so many letters.
 LONGEST, SIGNS = 24, r"[_\-./\\:]"
@@ -24,3 +24,14 @@ def breakable(text: str) -> str:
         return re.sub(rf"({SIGNS}|[^_\-./\\:]{{{LONGEST}}})(?=.)", rf"\1{_GAP}", found[0])
 
     return re.sub(rf"\S{{{LONGEST + 1},}}", split_word, text)
+
+
+def literal(text: str) -> str:
+    """Return a text that menus and buttons show as it is: a single & would underline the next letter.
+
+    Examples
+    --------
+    >>> literal("T2 & T3")
+    'T2 && T3'
+    """
+    return text.replace("&", "&&")

@@ -128,6 +128,12 @@ class Session(QObject):
             self.end()
             self._begin_journal(state)
 
+    def name_steps(self) -> None:
+        """Name the steps in the language of now; windows that show them ask again."""
+        for step in map(self.stack.command, range(self.stack.count())):
+            if isinstance(step, _Step):
+                step.name()
+
     def end(self) -> None:
         """End the journal: what was unsaved is given up."""
         if self._journal is not None:
@@ -219,6 +225,10 @@ class _Step(QUndoCommand):
     def __init__(self, session: Session, command: Command) -> None:
         super().__init__(translated(command.text))
         self._session, self._command, self._action = session, command, "do"
+
+    def name(self) -> None:
+        """Say what it does in the language of now."""
+        self.setText(translated(self._command.text))
 
     def redo(self) -> None:
         """Do it, for the first time or again."""

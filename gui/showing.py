@@ -20,6 +20,7 @@ from geofit.gui.view3d.drawn import Drawn
 from geofit.gui.view3d.sight import Sight
 from geofit.gui.workspace import Workspace
 from geofit.project.document import Document
+from geofit.project.horizon_edits import present_name
 from geofit.project.provenance import Provenance
 from geofit.project.step_files import StepFile
 from geofit.site.order import Order
@@ -46,7 +47,8 @@ class Showing(QObject):
         super().__init__(parent)
         self._document, self._panels, self._busy = document, workspace, busy
         self.drawing = SurfaceDrawing(self)
-        self._site = False
+        #: Whether everything is to be shown anew, and whether it is another site; how its horizons were edited before.
+        self._site, self._opened, self._edits = False, True, document.state.horizons
         self._points: set[str] = set()
         self._results: set[str] = set()
         self._chosen = self._settings = False
@@ -66,6 +68,7 @@ class Showing(QObject):
         workspace.view.sharper_wanted.connect(self._sharpen)
         self._ends: list[Callable[[], None]] = []
         for signal, listener in (
+            (document.site_opened, self._on_opened),
             (document.site_changed, self._on_site),
             (document.settings_changed, self._on_settings),
             (document.points_changed, self._on_points),
@@ -109,7 +112,9 @@ class Showing(QObject):
         if whole:
             panels.show_scene(is_open)
             self.drawing.clear()
-            panels.view.clear()
+            panels.view.clear(keep=not self._opened)
+            edits, self._edits, self._opened = self._edits, document.state.horizons, False
+            panels.view.layers.rename(lambda name: present_name(name, edits, self._edits))
             if is_open:
                 every = {name: document.site.horizons[name] for name in document.horizons}
                 panels.view.show_site(replace(document.site_in_use(), horizons=every))
@@ -173,7 +178,7 @@ class Showing(QObject):
     def take_over(self, other: Showing) -> None:
         """Show what another window on the same document has compared and exported, and its section."""
         self.orders, self.cuts, self._compared = other.orders, other.cuts, other._compared
-        self._exported, self.line = other._exported, other.line
+        self._exported, self.line, self.thickness = other._exported, other.line, other.thickness
         self._on_site_again()
         self.renew()
 
@@ -228,7 +233,10 @@ class Showing(QObject):
         waiting = bool(known and name and self._busy() and document.waiting(name))
         panels.fit.show_settings(name if known and name else "", settings, stale, self.waiting)
         verdict = self.verdict(name) if known and name else None
-        panels.verdict.show_accuracy(None if surface is None else surface.accuracy, stale, verdict, waiting)
+        stopped = not waiting and not stale and name in {one.horizon for one in document.missing()}
+        panels.verdict.show_accuracy(
+            None if surface is None else surface.accuracy, stale, verdict, waiting, stopped=stopped
+        )
         panels.residuals.show_surface(surface, document.listing(name) if known and name else None)
         panels.histogram.show_surface(surface)
         panels.seams.show_surface(surface)
@@ -283,9 +291,12 @@ class Showing(QObject):
     def _orders_of(self, name: str | None) -> tuple[Order, ...]:
         return tuple(order for order in self.orders if name in (order.upper, order.lower))
 
+    def _on_opened(self) -> None:
+        self._opened, self.line = True, None
+
     def _on_site(self) -> None:
         self._site = True
-        self.line, self.orders, self.cuts = None, (), ()
+        self.orders, self.cuts = (), ()
         self._exported.clear()
         self._later.start()
 

@@ -20,6 +20,8 @@ from PySide6.QtWidgets import (
 )
 
 from geofit import __version__
+from geofit.data.errors import GeofitError
+from geofit.data.messages import message
 from geofit.gui.icons import application_icon, palette_icon
 from geofit.io.project import is_project
 from geofit.io.survey_kinds import is_survey
@@ -31,13 +33,14 @@ class StartPage(QWidget):
     """The first page.
 
     Signals: ``sample_requested()``, ``open_requested()``, ``import_requested(list of Path)`` (empty: ask for files),
-    ``file_chosen(Path)``.
+    ``file_chosen(Path)``, ``refused(exception)`` where what was dropped together does not belong together.
     """
 
     sample_requested = Signal()
     open_requested = Signal()
     import_requested = Signal(object)
     file_chosen = Signal(object)
+    refused = Signal(object)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -125,8 +128,17 @@ class StartPage(QWidget):
         self._drop.light_up(False)
         files = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
         event.acceptProposedAction()
-        if len(files) == 1 and (is_project(files[0]) or files[0].suffix.lower() == ".toml" or is_survey(files[0])):
+        opened = [file for file in files if is_project(file) or file.suffix.lower() == ".toml" or is_survey(file)]
+        if opened and len(files) == 1:
             self.file_chosen.emit(files[0])
+        elif opened:
+            text = message(
+                "gui.dropped-together",
+                "{name} is opened and not imported, but it was dropped together with other files. Drop it alone; drop "
+                "tables to import without it.",
+                name=opened[0].name,
+            )
+            self.refused.emit(GeofitError(text))
         elif files:
             self.import_requested.emit(files)
 

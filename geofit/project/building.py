@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from geofit.data.accuracy import Accuracy
 from geofit.data.points import PointSet
 from geofit.data.prediction import PredictionResult
-from geofit.data.progress import Progress, tell
+from geofit.data.progress import Progress, tell, within
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.provenance import ManualEdit, Move, MoveToPointEdit, Part, Provenance, SeparationEdit, without_rows
@@ -117,7 +117,7 @@ def _pushed(surface: HorizonFit, edit: SeparationEdit, given: Given, progress: P
     from geofit.site.separate import separate_horizons
 
     stack = {surface.name: surface, **{other.horizon: make(other, given, progress) for other in edit.others}}
-    return separate_horizons(stack, edit.sequence, edit.minimum).surfaces[surface.name]
+    return separate_horizons(stack, edit.sequence, edit.minimum, within(progress, 1.0, 1.0)).surfaces[surface.name]
 
 
 def edited(surface: HorizonFit, edit: ManualEdit, progress: Progress | None = None) -> HorizonFit:

@@ -87,7 +87,7 @@ def state_surfaces(
         if horizons and name not in horizons:
             continue
         excluded = tuple(sorted(state.excluded.get(name, ())))
-        given = fingerprint(points[name], site)
+        given = fingerprint(points[name], state.as_read(site))
         present = Provenance(name, state.settings[name], given, excluded, part=state.parts.get(name))
         fitted = state.provenances.get(name)
         # A surface of other data cannot be made again; its settings and rows can be used.

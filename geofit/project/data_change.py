@@ -14,8 +14,9 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.project.data_commands import ChangeData
 from geofit.project.fault_blocks import site_with_blocks
+from geofit.project.moved_lines import moved_lines
 from geofit.project.named_points import Names, PointKey, carried_rows, excluded_names, point_keys, reopened, whole_of
-from geofit.project.provenance import Earlier, data_digest, fingerprint
+from geofit.project.provenance import Earlier, Provenance, data_digest, fingerprint
 from geofit.project.state import State
 
 __all__ = ["Arrivals", "DataChange", "arrivals", "change_of_data", "changed_files", "on_other_data"]
@@ -92,7 +93,8 @@ def change_of_data(state: State, before: Site, after: Site, added: Iterable[str]
     -------
     DataChange
         Excluded rows follow their points to other lines of their file; those whose points are not there any more, or
-        were corrected, are lost, as are manual edits: they belong to the earlier fit.
+        were corrected, are lost, as are manual edits: they belong to the earlier fit. Where nothing but lines has
+        changed, surfaces and their edits stay.
     """
     data, after = data_digest(after), state.shaped(after)
     parts = {name: part for name, part in state.parts.items() if part.horizon in after.horizons}
@@ -100,13 +102,22 @@ def change_of_data(state: State, before: Site, after: Site, added: Iterable[str]
     settings = {name: _settings(name, state, after, parts) for name in blocks_after.horizons}
     found = carried_rows(state, excluded_names(state, before), after)
     lost = list(found.lost)
+    then, now = state.as_read(before), state.as_read(after)
+    lines = moved_lines(then, now, blocks_before, blocks_after)
+    parts = {name: lines.part(part) or part for name, part in parts.items()}
+    carried: dict[str, Provenance] = {}
     earlier: dict[str, Earlier] = {}
     for name, provenance in state.provenances.items():
         whole = whole_of(state, name)
         if name not in settings:
             continue
-        same = fingerprint(before.horizons[whole], before) == fingerprint(after.horizons[whole], after)
-        of_present_data = provenance.given == fingerprint(blocks_before.horizons[name], before)
+        moved = lines.provenance(provenance)
+        if moved is not None:
+            if moved != provenance:
+                carried[name] = moved
+            continue
+        same = fingerprint(before.horizons[whole], then) == fingerprint(after.horizons[whole], now)
+        of_present_data = provenance.given == fingerprint(blocks_before.horizons[name], then)
         if not same and of_present_data:
             earlier[name] = Earlier(state.data, provenance, state.area)
         if not same and provenance.edits:
@@ -123,7 +134,7 @@ def change_of_data(state: State, before: Site, after: Site, added: Iterable[str]
     lost += [message("project.horizon-gone", "{name}: the new data contain no point of it", name=Untranslated(name))
              for name in gone_names]  # fmt: skip
     files = tuple(name for name, digest in after.inputs.items() if before.inputs.get(name) != digest)
-    command = ChangeData(data, files, tuple(added), settings, parts, dict(found.excluded), earlier)
+    command = ChangeData(data, files, tuple(added), settings, parts, dict(found.excluded), earlier, carried)
     names = dict.fromkeys([*before.horizons, *after.horizons])
     empty = PointSet([])
     found_arrivals = tuple(

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
-from typing import Any
+from dataclasses import asdict, dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
 from geofit.data.messages import Message, message, plural_message
 from geofit.data.settings import FitSettings
 from geofit.project.command import Command
-from geofit.project.provenance import DocumentError, Earlier, Part, Row, settings_from
+from geofit.project.provenance import DocumentError, Earlier, Part, Provenance, Row, settings_from
 from geofit.project.state import State
+
+if TYPE_CHECKING:
+    from geofit.project.document import Document
 
 __all__ = ["ChangeData"]
 
@@ -21,7 +24,8 @@ class ChangeData(Command):
 
     ``data`` names them, ``files`` are those that are new or changed, ``added`` all tables that the site file does not
     have. ``settings`` has every horizon that the site has now, in the order of its files, ``parts`` the blocks that
-    stay, ``excluded`` the rows as they are called now, and ``earlier`` the surfaces that can be compared.
+    stay, ``excluded`` the rows as they are called now, ``earlier`` the surfaces that can be compared, and ``carried``
+    what surfaces stay whose points are on other lines of their files now.
     """
 
     kind = "data"
@@ -32,6 +36,7 @@ class ChangeData(Command):
     parts: dict[str, Part]
     excluded: dict[str, tuple[Row, ...]]
     earlier: dict[str, Earlier]
+    carried: dict[str, Provenance] = field(default_factory=dict)
 
     @property
     def text(self) -> Message:  # noqa: D102
@@ -53,12 +58,28 @@ class ChangeData(Command):
             order=tuple(order),
             settings={name: state.settings.get(name, new) for name, new in self.settings.items()},
             excluded={name: frozenset(rows) for name, rows in self.excluded.items() if rows},
-            provenances={name: one for name, one in state.provenances.items() if name in self.settings},
+            provenances={
+                name: self.carried.get(name, one) for name, one in state.provenances.items() if name in self.settings
+            },
             parts=self.parts,
             data=self.data,
             added=self.added,
             earlier={name: one for name, one in {**state.earlier, **self.earlier}.items() if name in self.settings},
         )
+
+    def redo(self, document: Document) -> None:
+        """Do it; surfaces whose points have only moved to other lines are not made again."""
+        after, former = self.on(document.state), document.state.provenances
+        document.carry_results(after, {former[name]: now for name, now in self.carried.items() if name in former})
+        super().redo(document)
+
+    def undo(self, document: Document) -> None:
+        """Take it back; what was found out meanwhile about surfaces that stay is kept."""
+        if self._before is not None:
+            former = self._before.provenances
+            names = [name for name in self.carried if name in former]
+            document.carry_results(self._before, {self.carried[name]: former[name] for name in names})
+        super().undo(document)
 
     def to_data(self) -> dict[str, Any]:  # noqa: D102
         return {
@@ -70,6 +91,7 @@ class ChangeData(Command):
             "parts": {name: part.to_data() for name, part in self.parts.items()},
             "excluded": {name: [asdict(row) for row in rows] for name, rows in self.excluded.items()},
             "earlier": {name: one.to_data() for name, one in self.earlier.items()},
+            "carried": {name: one.to_data() for name, one in self.carried.items()},
         }
 
     @classmethod
@@ -82,4 +104,5 @@ class ChangeData(Command):
             {name: Part.from_data(part) for name, part in data["parts"].items()},
             {name: tuple(Row(**row) for row in rows) for name, rows in data["excluded"].items()},
             {name: Earlier.from_data(one) for name, one in data["earlier"].items()},
+            {name: Provenance.from_data(one) for name, one in data.get("carried", {}).items()},
         )

@@ -19,8 +19,10 @@ from geofit.project.body_sources import given_of_logs
 from geofit.project.building import Given, given_of
 from geofit.project.fault_blocks import Blocks, site_with_blocks
 from geofit.project.horizon_commands import MergeHorizons
+from geofit.project.horizon_edits import renamed_body, renamed_provenance
 from geofit.project.known_sources import KnownSources
 from geofit.project.listing import Listing, listing
+from geofit.project.moved_lines import on_points
 from geofit.project.provenance import DocumentError, Provenance, Row, data_digest, find_rows, fingerprint, without_rows
 from geofit.project.shelf import Shelf
 from geofit.project.signal import Signal
@@ -48,8 +50,10 @@ class Document:
 
     Signals
     -------
+    site_opened()
+        Another site was opened, or none is open any more; ``site_changed`` follows.
     site_changed()
-        Another site was opened, or a horizon was split into blocks: look at everything anew.
+        The site is another one, or has other data or horizons: look at everything anew.
     settings_changed(horizon), points_changed(horizon), result_changed(horizon)
         Settings; rows that take part; the surface, its check or what is known away from the data.
     order_changed(), name_changed()
@@ -79,6 +83,7 @@ class Document:
         self._comparisons: dict[str, tuple[tuple[Provenance, Provenance], Comparison]] = {}
         self._judged: dict[str, tuple[HorizonFit, HorizonFit]] = {}
         self._listings: dict[str, tuple[tuple[object, object, object], Listing]] = {}
+        self.site_opened: Signal[[]] = Signal()
         self.site_changed: Signal[[]] = Signal()
         self.settings_changed: Signal[[str]] = Signal()
         self.points_changed: Signal[[str]] = Signal()
@@ -118,6 +123,7 @@ class Document:
         self._take_data()
         worked_on = [name for name in self._state.order if name in self._state.provenances]
         self.selection = Selection(next(iter((*worked_on, *self._state.order)), None))
+        self.site_opened.emit()
         self.site_changed.emit()
         self.saved_changed.emit()
 
@@ -244,7 +250,7 @@ class Document:
         """Return the fingerprint of the site for a horizon, or for the whole of one that was split."""
         if name not in self._fingerprints:
             points = self._given(name) if name in self._site.horizons else self._read.horizons.get(name)
-            self._fingerprints[name] = "" if points is None else fingerprint(points, self._read)
+            self._fingerprints[name] = "" if points is None else fingerprint(points, self._state.as_read(self._read))
         return self._fingerprints[name]
 
     def merging(self, names: Sequence[str], name: str) -> MergeHorizons:
@@ -326,6 +332,37 @@ class Document:
         """Keep what was found out about a surface away from its data."""
         self.shelf.examined(provenance, prediction)
         self._tell_of(provenance)
+
+    def rename_results(self, old: str, new: str) -> None:
+        """Keep what was made under the new name of a horizon, before the state has it. For commands only."""
+        self.shelf.rename(old, new)
+        self.sources.rename(old, new)
+        bodies = {
+            record.provenance: renamed_body(record.provenance, old, new) for record in self._state.bodies.values()
+        }
+        for provenance, renamed in bodies.items():
+            result = self.bodies.get(provenance)
+            if result is not None and renamed != provenance:
+                self.bodies.put(renamed, result, {*bodies, *bodies.values()})
+        if old in self._comparisons:
+            (before, now), found = self._comparisons.pop(old)
+            pair = renamed_provenance(before, old, new), renamed_provenance(now, old, new)
+            self._comparisons[new] = (pair, found)
+
+    def carry_results(self, after: State, provenances: Mapping[Provenance, Provenance]) -> None:
+        """Keep surfaces under other provenances, whose points have moved to other lines. For commands only.
+
+        ``after`` is the state that will have them.
+        """
+        site = site_with_blocks(after.shaped(self._data.get(after.data, self._read)), after.parts)
+        for former, now in provenances.items():
+            surface, points = self.shelf.surface(former), site.horizons.get(now.horizon)
+            if surface is None or points is None:
+                continue
+            moved = on_points(surface, without_rows(points, now.excluded))
+            if moved is not None:
+                self.shelf.carry(former, now, moved)
+        self.sources.carry(provenances)
 
     def earlier(self, name: str) -> tuple[Provenance, Given, HorizonFit | None] | None:
         """Return what a horizon was before its data changed: from what it was made, and its surface if available."""

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from geofit.data.messages import Message, message
 from geofit.project.command import Command, known
-from geofit.project.horizon_edits import HorizonEdit, renamed_provenance
+from geofit.project.horizon_edits import HorizonEdit, renamed_body, renamed_provenance
 from geofit.project.provenance import DocumentError, Row
 from geofit.project.state import State
+
+if TYPE_CHECKING:
+    from geofit.project.document import Document
 
 __all__ = ["MergeHorizons", "RemoveHorizons", "RenameHorizon"]
 
@@ -19,7 +22,7 @@ T = TypeVar("T")
 
 @dataclass
 class RenameHorizon(Command):
-    """Another name for a horizon; its surface stays."""
+    """Another name for a horizon; its surface stays, and so do bodies that lie between it and others."""
 
     kind = "rename horizon"
     horizon: str
@@ -44,10 +47,27 @@ class RenameHorizon(Command):
             settings=keys(state.settings),
             excluded=keys(state.excluded),
             provenances=provenances,
-            # What it was before had its former name: there is nothing to compare with.
-            earlier={name: one for name, one in state.earlier.items() if name != old},
+            earlier={
+                name: replace(one, provenance=renamed_provenance(one.provenance, old, new))
+                for name, one in keys(state.earlier).items()
+            },
             horizons=(*state.horizons, HorizonEdit("renamed", (old,), new)),
+            bodies={
+                name: replace(record, provenance=renamed_body(record.provenance, old, new))
+                for name, record in state.bodies.items()
+            },
         )
+
+    def redo(self, document: Document) -> None:
+        """Do it; what was made is not made again."""
+        self.on(document.state)
+        document.rename_results(self.horizon, self.name)
+        super().redo(document)
+
+    def undo(self, document: Document) -> None:
+        """Take it back; what was made meanwhile is kept, too."""
+        document.rename_results(self.name, self.horizon)
+        super().undo(document)
 
     @classmethod
     def from_data(cls, data: Mapping[str, Any]) -> Command:  # noqa: D102

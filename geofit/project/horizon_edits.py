@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -10,9 +10,20 @@ import numpy as np
 
 from geofit.data.points import PointSet
 from geofit.data.site import Site
+from geofit.project.body_record import BetweenHorizons, BodyProvenance, BodySource, MorphFrame
 from geofit.project.provenance import Corners, Part, Provenance, SeparationEdit
 
-__all__ = ["HorizonEdit", "renamed_provenance", "shaped"]
+__all__ = [
+    "HorizonEdit",
+    "as_read",
+    "present_body",
+    "present_name",
+    "present_provenance",
+    "renamed_body",
+    "renamed_provenance",
+    "renamed_source",
+    "shaped",
+]
 
 
 @dataclass(frozen=True)
@@ -73,6 +84,18 @@ def shaped(site: Site, area: Corners | None, edits: Iterable[HorizonEdit]) -> Si
     return site if area is None else replace(site, boundary=np.array(area))
 
 
+def as_read(site: Site, edits: Iterable[HorizonEdit]) -> Site:
+    """Return a site whose dips name horizons as its files do: a new name does not make other data."""
+    if site.orientations is None:
+        return site
+    names: dict[str, str] = {}
+    for edit in edits:
+        if edit.kind == "renamed":
+            names[edit.name] = names.pop(edit.names[0], edit.names[0])
+    horizon = np.array([names.get(name, name) for name in site.orientations.horizon.tolist()], np.str_)
+    return replace(site, orientations=replace(site.orientations, horizon=horizon))
+
+
 def renamed_provenance(provenance: Provenance, old: str, new: str) -> Provenance:
     """Return a provenance that calls a horizon by its new name, wherever it occurs."""
 
@@ -99,6 +122,71 @@ def renamed_provenance(provenance: Provenance, old: str, new: str) -> Provenance
         edits=edits,
         part=None if provenance.part is None else part(provenance.part),
     )
+
+
+def renamed_body(body: BodyProvenance, old: str, new: str) -> BodyProvenance:
+    """Return the provenance of a body that calls a horizon by its new name, wherever it occurs."""
+    return replace(body, source=renamed_source(body.source, old, new))
+
+
+def renamed_source(source: BodySource, old: str, new: str) -> BodySource:
+    """Return the source of a body that calls a horizon by its new name, wherever it occurs."""
+    match source:
+        case BetweenHorizons(upper, lower):
+            return BetweenHorizons(new if upper == old else upper, new if lower == old else lower)
+        case MorphFrame(ends=ends):
+            return replace(source, ends=tuple(renamed_body(end, old, new) for end in ends))
+    return source
+
+
+def present_name(name: str, then: Sequence[HorizonEdit], now: Sequence[HorizonEdit]) -> str | None:
+    """Return how a horizon is called after ``now`` that was called ``name`` after ``then``; None where it is gone.
+
+    Examples
+    --------
+    >>> renamed = HorizonEdit("renamed", ("T2",), "base of T2")
+    >>> present_name("T2", (), (renamed,))
+    'base of T2'
+    >>> present_name("base of T2", (renamed,), ())
+    'T2'
+    """
+    for edit in _since(then, now):
+        if name in edit.names:
+            if edit.kind != "renamed":
+                return None
+            name = edit.name
+    return name
+
+
+def present_provenance(
+    provenance: Provenance, then: Sequence[HorizonEdit], now: Sequence[HorizonEdit]
+) -> Provenance | None:
+    """Return a provenance that names horizons as they are called now; None where its own is gone."""
+    for edit in _since(then, now):
+        if edit.kind == "renamed":
+            provenance = renamed_provenance(provenance, edit.names[0], edit.name)
+        elif provenance.horizon in edit.names:
+            return None
+    return provenance
+
+
+def present_body(body: BodyProvenance, then: Sequence[HorizonEdit], now: Sequence[HorizonEdit]) -> BodyProvenance:
+    """Return the provenance of a body that names horizons as they are called now."""
+    for edit in _since(then, now):
+        if edit.kind == "renamed":
+            body = renamed_body(body, edit.names[0], edit.name)
+    return body
+
+
+def _since(then: Sequence[HorizonEdit], now: Sequence[HorizonEdit]) -> Iterator[HorizonEdit]:
+    """Return the edits that lead from one list of edits to another: some are taken back, the last first."""
+    same = next((k for k, (a, b) in enumerate(zip(then, now, strict=False)) if a != b), min(len(then), len(now)))
+    for edit in reversed(then[same:]):
+        if edit.kind == "renamed":
+            yield HorizonEdit("renamed", (edit.name,), edit.names[0])
+        elif edit.kind == "merged":
+            yield HorizonEdit("removed", (edit.name,))
+    yield from now[same:]
 
 
 def _renamed(names: Iterable[str], new: Mapping[str, str]) -> list[str]:

@@ -15,6 +15,7 @@ from geofit.project.body_record import (
     Outlines,
     SurfacePicks,
 )
+from geofit.project.horizon_edits import renamed_body, renamed_provenance, renamed_source
 from geofit.project.provenance import Provenance
 
 __all__ = ["FileSource", "KnownSources", "file_sources"]
@@ -44,6 +45,21 @@ class KnownSources:
             self._surfaces[body] = horizons
         else:
             self.read(body.source, body.given)
+
+    def rename(self, old: str, new: str) -> None:
+        """Call a horizon by its new name, too."""
+        self._held |= {renamed_source(source, old, new): given for source, given in self._held.items()}
+        self._surfaces |= {
+            renamed_body(body, old, new): {
+                new if name == old else name: renamed_provenance(one, old, new) for name, one in horizons.items()
+            }
+            for body, horizons in self._surfaces.items()
+        }
+
+    def carry(self, provenances: Mapping[Provenance, Provenance]) -> None:
+        """Hear that surfaces are the same under other provenances."""
+        for body, horizons in self._surfaces.items():
+            self._surfaces[body] = {name: provenances.get(one, one) for name, one in horizons.items()}
 
     def held(self, source: BodySource) -> str | None:
         """Return the hash of the data that a source held when it was read last; None if it was not."""

@@ -9,7 +9,7 @@ from typing import Any
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.project.body_record import BodyRecord
-from geofit.project.horizon_edits import HorizonEdit, shaped
+from geofit.project.horizon_edits import HorizonEdit, as_read, shaped
 from geofit.project.provenance import Corners, Earlier, Part, Provenance, Row, corners_from, data_digest, settings_from
 
 __all__ = ["State"]
@@ -43,6 +43,10 @@ class State:
     def shaped(self, site: Site) -> Site:
         """Return a site that was read as it is worked on: with the study area and the horizons of this state."""
         return shaped(site, self.area, self.horizons)
+
+    def as_read(self, site: Site) -> Site:
+        """Return a shaped site whose dips name horizons as its files do: what fingerprints are of."""
+        return as_read(site, self.horizons)
 
     @classmethod
     def of_site(cls, site: Site) -> State:

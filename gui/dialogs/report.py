@@ -26,6 +26,7 @@ from PySide6.QtWidgets import (
 from geofit.data.site import Site
 from geofit.data.stale import stale_warning
 from geofit.gui.dialogs.task_dialog import TaskDialog
+from geofit.gui.names import literal
 from geofit.gui.preferences import Preferences
 from geofit.gui.save_file import may_replace
 from geofit.gui.translate import translated
@@ -146,7 +147,7 @@ class ReportDialog(TaskDialog):
     def _ask_to_examine(self) -> None:
         """Offer to examine the horizons of which nothing is known away from their data."""
         unknown = [result.name for result in self._results if result.prediction is None]
-        self.examine.setText(self.tr("&Examine first: {names}").format(names=", ".join(unknown)))
+        self.examine.setText(self.tr("&Examine first: {names}").format(names=literal(", ".join(unknown))))
         self._form.setRowVisible(self.examine, bool(unknown))
 
     def _browse(self) -> None:

@@ -50,7 +50,7 @@ class ChecksPanel(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.tree = QTreeWidget()
+        self.tree = _Tree()
         self.tree.setAccessibleName(self.tr("Checks of the surface"))
         self.tree.setHeaderLabels([self.tr("Check"), self.tr("Result"), self.tr("Value"), self.tr("Limit"), ""])
         self.tree.headerItem().setText(4, self.tr("In words"))
@@ -80,6 +80,8 @@ class ChecksPanel(QWidget):
         self.pages = Placeholder(content)
         self.setLayout(self.pages)
         self._rows: list[QTreeWidgetItem] = []
+        # A panel that is hidden is filled before the tree has its width.
+        self.tree.resized.connect(self._fit_columns)
         self.show_surface(None)
 
     def show_surface(
@@ -129,11 +131,6 @@ class ChecksPanel(QWidget):
         heads = [self.tree.headerItem().text(k) for k in range(5)]
         lines = [heads, *([row.text(k).replace("\n", " ") for k in range(5)] for row in rows)]
         QApplication.clipboard().setText("\n".join("\t".join(line) for line in lines) + "\n")
-
-    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
-        """Wrap the words anew."""
-        super().resizeEvent(event)
-        self.tree.scheduleDelayedItemsLayout()
 
     def _group(self, title: str, rows: Sequence[QTreeWidgetItem]) -> None:
         if not rows:
@@ -239,6 +236,7 @@ class ChecksPanel(QWidget):
             # A long name leaves room for what is said.
             most = 2 * self.tree.width() // 5 if column == 0 else self.tree.width() - 110
             self.tree.setColumnWidth(column, min(self.tree.columnWidth(column), max(most, 130)))
+        self.tree.scheduleDelayedItemsLayout()
 
     def _tell(self, current: QTreeWidgetItem | None) -> None:
         index = None if current is None else current.data(0, _POINT)
@@ -247,6 +245,17 @@ class ChecksPanel(QWidget):
             self.point_chosen.emit(index)
         elif place is not None:
             self.place_chosen.emit(*place)
+
+
+class _Tree(QTreeWidget):
+    """Tells ``resized()`` when it has another width."""
+
+    resized = Signal()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        super().resizeEvent(event)
+        if event.size().width() != event.oldSize().width():
+            self.resized.emit()
 
 
 class _Wrapping(QStyledItemDelegate):

@@ -39,6 +39,7 @@ class FitPanel(QWidget):
         font.setBold(True)
         self.title.setFont(font)
         self.title.setWordWrap(True)
+        self.title.setTextFormat(Qt.TextFormat.PlainText)
         self.banner = Banner()
         self.form = SettingsForm(SETTINGS, FitSettings, FIRST)
         self.fields, self.errors, self.more = self.form.fields, self.form.errors, self.form.more

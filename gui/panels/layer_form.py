@@ -6,6 +6,7 @@ from PySide6.QtCore import QRectF, QSignalBlocker, QSize, Qt
 from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QCheckBox, QComboBox, QFormLayout, QGroupBox, QSizePolicy, QSlider, QWidget
 
+from geofit.gui.names import literal
 from geofit.gui.view3d.annotations import theme_of
 from geofit.gui.view3d.layer_names import layer_title, word
 from geofit.gui.view3d.layers import Layer, Layers, Legend
@@ -96,8 +97,9 @@ class LayerForm(QGroupBox):
 
     def _entitle(self) -> None:
         room = max(self.width() - 16, 40)
-        self.setTitle(self.fontMetrics().elidedText(self._name, Qt.TextElideMode.ElideMiddle, room))
-        self.setToolTip("" if self.title() == self._name else self._name)
+        title = self.fontMetrics().elidedText(self._name, Qt.TextElideMode.ElideMiddle, room)
+        self.setTitle(literal(title))
+        self.setToolTip("" if title == self._name else self._name)
 
     def _stand(self) -> None:
         self.setMinimumHeight(max(self.heightForWidth(self.width()), 0))

@@ -142,6 +142,8 @@ class PredictionPanel(QWidget):
                 )
                 if sd.factor > 1
                 else self.tr("Not widened: the 90 % band contains 90 % of the left-out points or more.")
+                if prediction.left_out and all(left.inside >= 0.9 for left in prediction.left_out)
+                else self.tr("The 90 % band was not widened.")
             )
             lines.append(words.format(factor=sd.factor))
         for left in prediction.left_out:

@@ -95,7 +95,7 @@ class ProjectTree(QWidget):
         self.view.setMinimumHeight(160)
         self.view.opacity_asked.connect(self._ask_opacity)
         self.view.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
-        self.view.setTextElideMode(Qt.TextElideMode.ElideRight)
+        self.view.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         self.search.textChanged.connect(self._filter)
         # As in :class:`~geofit.gui.panels.tables.DataTable`.
         self._selection = QItemSelectionModel(self.shown, self.view)
@@ -289,13 +289,13 @@ class ProjectTree(QWidget):
         words = "\n".join(
             (words, *(f"{translated(lamp.title)}: {in_lengths(translated(lamp.text))}" for lamp in judged.lamps))
         )
-        title = name
-        if old:
-            title = self.tr("{name} (stale)").format(name=name)
-            words += "\n" + self.tr("Older than its data or settings: press Fit")
-        mark = icon(f"horizon:{colour}+{'stale' if old else level_mark(judged.level)}")
         aloud = f"{name}, {translated(judged.word)}"
-        row = TreeRow(title, ("horizon", name), count, mark, words, aloud, italic=old)
+        if old:
+            # The mark and the slope of the letters show it: the name needs the room.
+            older = self.tr("Older than its data or settings: press Fit")
+            words, aloud = f"{words}\n{older}", f"{aloud}, {older}"
+        mark = icon(f"horizon:{colour}+{'stale' if old else level_mark(judged.level)}")
+        row = TreeRow(name, ("horizon", name), count, mark, words, aloud, italic=old)
         for patch in surface.patches:
             group = a.by_patch.get(patch.name)
             rows, columns = patch.control.shape[:2]
@@ -309,9 +309,10 @@ class ProjectTree(QWidget):
         return row
 
     def _body(self, body: TreeBody) -> TreeRow:
-        title = self.tr("{name} (stale)").format(name=body.name) if body.stale else body.name
+        aloud = body.words.replace("\n", ", ") if body.stale else ""
+        mark, stale = icon(body.mark), body.stale
         return TreeRow(
-            title, ("body", body.name), body.count, icon(body.mark), body.words, checked=body.visible, italic=body.stale
+            body.name, ("body", body.name), body.count, mark, body.words, aloud, checked=body.visible, italic=stale
         )
 
     def _checked(self, row: TreeRow, on: bool) -> None:

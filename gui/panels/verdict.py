@@ -81,23 +81,34 @@ class VerdictBadge(QFrame):
         return "\n".join(label.text() for label in labels if label.text()).replace("\N{NO-BREAK SPACE}", " ")
 
     def show_accuracy(
-        self, accuracy: Accuracy | None, stale: bool = False, verdict: Verdict | None = None, waiting: bool = False
+        self,
+        accuracy: Accuracy | None,
+        stale: bool = False,
+        verdict: Verdict | None = None,
+        waiting: bool = False,
+        *,
+        stopped: bool = False,
     ) -> None:
         """Show the check of a surface, None while there is none; ``verdict`` has what else is known of it.
 
-        ``waiting`` states that there is a surface, which is still being read or made.
+        ``waiting`` states that there is a surface, which is still being read or made; ``stopped`` that its making was
+        stopped.
         """
         self._stale = stale and accuracy is not None
         judged = verdict_of(accuracy) if verdict is None and accuracy is not None else verdict
         self._level = "none" if judged is None else judged.level
         self.mark.name = level_mark(self._level)
         none = self.tr("Reading the surface…") if waiting else self.tr("No surface yet")
+        if stopped:
+            none = self.tr("Surface not made again")
         self._word.setText(none if judged is None else verdict_word(judged))
         self._show_lamps(() if judged is None else judged.lamps)
         if accuracy is None:
             self._more.setText(
                 self.tr("It is part of the project, and its verdict follows in a moment.")
                 if waiting
+                else self.tr("That was stopped. Press Fit to make it as it was, with its manual edits.")
+                if stopped
                 else self.tr("Press Fit to fit one and check it against ε.")
             )
             self.setToolTip("")

@@ -146,7 +146,7 @@ class Contents:
                 self.stage.show(layer, partial(shape_item, bound, None))
         self._show_points(name)
         for key, show in ((f"seams:{name}", self.show_seams), (f"control:{name}", self.show_control)):
-            if key in layers:
+            if key in layers or key in layers.kept:
                 show(name)
         for layer in layers:
             if layer.colour_by == "thickness" and layer.horizon != name:
@@ -176,13 +176,13 @@ class Contents:
             self.listed.pop(name, None)
             self.stage.layers.remove(f"points:{name}")
 
-    def clear(self) -> None:
-        """Take everything away."""
+    def clear(self, *, keep: bool = False) -> None:
+        """Take everything away; ``keep`` what was chosen for the layers."""
         self.site = None
         for known in (self.points, self.surfaces, self.drawn, self.control, self.listed, self._cut):
             known.clear()
         self._clouds.clear()
-        self.stage.layers.clear()
+        self.stage.layers.clear(keep=keep)
 
     def show_seams(self, name: str) -> None:
         """Show the seams of a surface that has been checked."""

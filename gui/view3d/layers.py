@@ -81,6 +81,8 @@ class Layers:
 
     def __init__(self) -> None:
         self._layers: dict[str, Layer] = {}
+        #: Layers as they were when all were taken out: what a person chose holds if they come back.
+        self.kept: dict[str, Layer] = {}
         self.listeners: list[Listener] = []
 
     def __iter__(self) -> Iterator[Layer]:
@@ -102,32 +104,41 @@ class Layers:
 
     def add(self, layer: Layer) -> Layer:
         """Add a layer, or renew one of the same key, which keeps what a person has chosen for it."""
-        old = self._layers.get(layer.key)
-        if old is not None:
-            colour_by = old.colour_by if old.colour_by in layer.choices else layer.colour_by
-            isolines = layer.isolines if old.isolines is None else old.isolines
-            labels = layer.labels if old.labels is None else old.labels
-            layer = replace(
-                layer,
-                visible=old.visible,
-                opacity=old.opacity,
-                colour_by=colour_by,
-                isolines=isolines,
-                labels=labels,
-            )
+        old, kept = self._layers.get(layer.key), self.kept.pop(layer.key, None)
+        chosen = kept or old
+        if chosen is not None:
+            layer = _as_chosen(layer, chosen)
         self._layers[layer.key] = layer
         self._tell("changed" if old is not None else "added", layer.key)
         return layer
 
     def remove(self, key: str) -> None:
-        """Take a layer out, if it is there."""
+        """Take a layer out, if it is there, and forget what was chosen for it."""
+        self.kept.pop(key, None)
         if self._layers.pop(key, None) is not None:
             self._tell("removed", key)
 
-    def clear(self) -> None:
-        """Take all layers out."""
+    def clear(self, *, keep: bool = False) -> None:
+        """Take all layers out; ``keep`` what was chosen for them."""
+        self.kept = {**self.kept, **self._layers} if keep else {}
         self._layers.clear()
         self._tell("cleared", "")
+
+    def rename(self, present: Callable[[str], str | None]) -> None:
+        """Keep what was chosen for horizons under their present names; None for one that is gone but may come back."""
+        kept = {}
+        for layer in self.kept.values():
+            new = present(layer.horizon) if layer.horizon else None
+            layer = layer if new is None else replace(layer, key=f"{layer.kind}:{new}", horizon=new)
+            kept[layer.key] = layer
+        self.kept = kept
+
+    def take_over(self, other: Layers) -> None:
+        """Take what was chosen in another list, for layers that are there and for those that come."""
+        self.kept = {**other.kept, **other._layers}
+        for layer in self:
+            if layer.key in self.kept:
+                self.add(layer)
 
     def change(self, key: str, **changes: Any) -> None:
         """Change fields of a layer; no signal is sent where nothing changes.
@@ -155,3 +166,15 @@ class Layers:
     def _tell(self, what: str, key: str) -> None:
         for listener in tuple(self.listeners):
             listener(what, key)
+
+
+def _as_chosen(layer: Layer, old: Layer) -> Layer:
+    """Return a layer with what a person has chosen for it before."""
+    return replace(
+        layer,
+        visible=old.visible,
+        opacity=old.opacity,
+        colour_by=old.colour_by if old.colour_by in layer.choices else layer.colour_by,
+        isolines=layer.isolines if old.isolines is None else old.isolines,
+        labels=layer.labels if old.labels is None else old.labels,
+    )

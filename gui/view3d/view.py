@@ -174,21 +174,31 @@ class SceneView(QWidget):
             self.pointer.let_go()
 
     def _one_of(self, kind: str, horizon: str | None) -> None:
-        for layer in self.layers:
+        for layer in (*self.layers, *self.layers.kept.values()):
             if layer.kind == kind and layer.horizon != horizon:
                 self.layers.remove(layer.key)
         if horizon is not None and horizon in self.contents.surfaces:
             (self.contents.show_seams if kind == "seams" else self.contents.show_control)(horizon)
 
-    def clear(self) -> None:
-        """Take everything away."""
-        self.contents.clear()
+    def clear(self, *, keep: bool = False) -> None:
+        """Take everything away; ``keep`` viewpoint, section, clip box and what was chosen for the layers."""
+        self.contents.clear(keep=keep)
         self.control_move.show("", None)
-        self._framed = False
         self.pointer.clear()
-        self.set_section(None, 0.0)
-        self.set_clip(False)
+        if not keep:
+            self._framed = False
+            self.set_section(None, 0.0)
+            self.set_clip(False)
         self._changed()
+
+    def take_over(self, other: SceneView) -> None:
+        """Show what is shown as another view on the same site does: layers, heights, and from the same viewpoint."""
+        self.layers.take_over(other.layers)
+        self.set_exaggeration(other.canvas.stretch)
+        if self._framed and other._framed:
+            viewpoint = other.canvas.target
+            place = viewpoint.centre / (1.0, 1.0, other.canvas.stretch) + other.canvas.origin
+            self.canvas.look(replace(viewpoint, centre=self._in_scene(place)))
 
     # Looking -------------------------------------------------------------------------------------------------
 

@@ -491,9 +491,10 @@ def lens(app, tmp_path):
 
 
 def test_a_body_whose_file_changed_is_marked_in_the_tree_and_the_panel(app, lens):
-    assert tree_bodies(app) == ["lens (stale)"]
-    row = tree_item(app, "lens (stale)")
+    assert tree_bodies(app) == ["lens"]
+    row = tree_item(app, "lens")
     assert row.italic
+    assert "Changed: Data in lens.csv" in row.aloud
     assert "Changed: Data in lens.csv" in row.words
     assert "Changed: Data in lens.csv" in app.panels.bodies.banner.text
     assert "Older than its data" in app.panels.bodies.badge.text

@@ -48,6 +48,25 @@ def test_every_check_stands_there_with_its_result(panel):
     assert rows[0].text(3).replace("\xa0", " ") == "0.500 m"
 
 
+def test_a_panel_that_was_filled_while_it_was_hidden_uses_its_width(qtbot):
+    shown, filled = ChecksPanel(), ChecksPanel()
+    for panel in (shown, filled):
+        qtbot.addWidget(panel)
+    shown.resize(1200, 500)
+    shown.show()
+    qtbot.waitExposed(shown)
+    shown.show_surface(fitted())
+    # As behind another panel: it has no width yet.
+    filled.resize(100, 30)
+    filled.show_surface(fitted())
+    filled.resize(1200, 500)
+    filled.show()
+    qtbot.waitExposed(filled)
+    assert filled.tree.columnWidth(0) == shown.tree.columnWidth(0)
+    names = [row.text(0) for row in groups(filled)["Surface"]]
+    assert filled.tree.columnWidth(0) > max(map(filled.fontMetrics().horizontalAdvance, names))
+
+
 def test_a_failed_check_differs_in_word_and_mark(panel):
     panel.show_surface(failing(fitted()))
     sigma, core = groups(panel)["Surface"][:2]

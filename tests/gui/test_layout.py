@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from panel_samples import SITE, sample_site
-from PySide6.QtCore import QByteArray
+from PySide6.QtCore import QByteArray, Qt
 from PySide6.QtWidgets import QStyle, QTabBar, QToolBar
 
 from geofit.data.site import Site
@@ -84,6 +84,16 @@ def test_a_layout_that_cannot_be_read_gives_the_first_one(app):
     app.window.panels.layout.state = QByteArray(b"\x00\xff")
     opened(app)
     assert in_front(app.window) == {"tree", "fit"}
+
+
+def test_names_of_horizons_have_room_at_the_left(app):
+    app.window.resize(1360, 800)
+    opened(app)
+    app.trigger("reset_layout")
+    app.idle()
+    tree = app.window.panels.tree
+    assert tree.width() >= 240
+    assert tree.view.textElideMode() == Qt.TextElideMode.ElideMiddle
 
 
 def test_the_view_has_most_of_a_small_window(app):

@@ -29,6 +29,7 @@ from geofit.gui.dialogs.shortcuts import ShortcutsDialog
 from geofit.gui.dialogs.system_report import SystemReport, system_report
 from geofit.gui.preferences import Preferences
 from geofit.gui.theme import is_dark
+from geofit.gui.translate import translated
 from geofit.project.commands import RenameSite
 from geofit.project.journal import unfinished
 from geofit.project.state import State
@@ -105,6 +106,29 @@ def test_opening_fitting_and_failing(app, small):
     assert app.document.stale("low")
 
 
+def test_reports_of_a_site_are_not_those_of_the_next_one(app, small, tmp_path):
+    app.window.files.open(small)
+    app.idle()
+    app.window.delivering.list_report(tmp_path / "report.pdf")
+    reports = lambda: [row.text for row in app.window.panels.tree.items.all() if row.target[0] == "report"]  # noqa: E731
+    assert reports() == ["report.pdf"]
+    app.desktop.change_language("zh_CN")
+    app.desktop.change_language("en")
+    assert reports() == ["report.pdf"]
+    app.window.files.open(small)
+    app.idle()
+    assert reports() == []
+
+
+def test_a_project_that_is_dropped_with_tables_is_refused_with_advice(app, small):
+    mime = QMimeData()
+    mime.setUrls([QUrl.fromLocalFile(str(file)) for file in (small, small.with_name("picks.csv"))])
+    buttons, keys = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+    app.window.dropEvent(QDropEvent(QPointF(5, 5), Qt.DropAction.CopyAction, mime, buttons, keys))
+    assert f"{small.name} is opened and not imported" in str(app.failures.pop())
+    assert not app.document.is_open
+
+
 def test_another_language_keeps_the_work(app, small):
     app.window.files.open(small)
     app.idle()
@@ -119,6 +143,8 @@ def test_another_language_keeps_the_work(app, small):
     assert "Kept" in app.window.windowTitle()
     assert app.desktop.session.stack.canUndo()
     undo = app.window.menus.undo
+    assert translated(RenameSite("Kept").text) in undo.text()
+    assert "Rename" not in undo.text()
     undo.trigger()
     assert app.document.state.name == "Small"
     assert not undo.isEnabled()

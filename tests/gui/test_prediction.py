@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from panel_samples import fitted, prediction
 from PySide6.QtCore import Qt
@@ -42,6 +44,18 @@ def test_the_figures_are_told(panel):
     kriging = panel.left_out.rows.columns[titles.index("Kriging, m")]
     assert [kriging.text(0), kriging.text(1)] == ["1.400", ""]
     assert "left out together" in panel.notes.text()
+
+
+@pytest.mark.parametrize(("inside", "words"), [((0.9, 1.0), "Not widened: the 90 % band contains 90 %"),
+                                              ((1.0, 0.0), "The 90 % band was not widened."),
+                                              ((), "The 90 % band was not widened.")])  # fmt: skip
+def test_a_band_that_was_not_widened_contains_what_it_contains(panel, inside, words):
+    found = prediction(393)
+    left = tuple(replace(found.left_out[0], inside=share) for share in inside)
+    panel.show_prediction(replace(found, left_out=left, uncertainty=replace(found.uncertainty, factor=1.0)))
+    text = panel.figures.text()
+    assert words in text
+    assert ("or more" in text) == words.startswith("Not")
 
 
 def test_a_suggestion_leads_to_its_place(panel, qtbot):

@@ -62,7 +62,7 @@ def test_the_verdict_is_marked(tree):
     assert all(a == b or pictures[a] != pictures[b] for a in pictures for b in pictures)
     assert "PASS" in by_name[WITH_PERIPHERY].words
     assert "FAIL" in by_name["W"].words
-    assert "stale" in by_name["T2-T1"].text
+    assert "Older than its data" in by_name["T2-T1"].aloud
     assert "not fitted" in by_name[FAULT].words
 
 

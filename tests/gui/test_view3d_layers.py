@@ -46,6 +46,25 @@ def test_a_renewed_layer_keeps_what_was_chosen_unless_it_is_gone():
     assert layers.add(Layer("surface:W", "surface", "W", choices=("plain",))).colour_by == "plain"
 
 
+def test_what_was_chosen_outlives_a_renewal_and_follows_a_name():
+    layers, other = Layers(), Layers()
+    for name in ("W", "F"):
+        layers.add(Layer(f"surface:{name}", "surface", name))
+        layers.change(f"surface:{name}", visible=False, opacity=0.4)
+    layers.clear(keep=True)
+    layers.rename({"W": "base of W"}.get)
+    assert layers.add(Layer("surface:base of W", "surface", "base of W")).opacity == 0.4
+    other.add(Layer("surface:base of W", "surface", "base of W"))
+    other.take_over(layers)
+    assert not other["surface:base of W"].visible
+    # F was removed, and comes back.
+    for one in (layers, other):
+        assert not one.add(Layer("surface:F", "surface", "F")).visible
+    layers.clear(keep=True)
+    layers.clear()
+    assert layers.add(Layer("surface:F", "surface", "F")).visible
+
+
 def test_layers_refuse_what_cannot_be():
     layers = Layers()
     layers.add(Layer("ground", "ground"))

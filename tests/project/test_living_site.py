@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import json
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from geofit.data.errors import InputError
 from geofit.io.site_file import read_site
+from geofit.prediction.examine import examine
 from geofit.project.adding import add_files
-from geofit.project.building import make
-from geofit.project.commands import ExcludeRows, SetSurface
+from geofit.project.building import edited, make
+from geofit.project.commands import ExcludeRows, MoveToPoint, SetSurface, command_from
 from geofit.project.comparing import compare_states, made_comparison, state_surfaces
 from geofit.project.data_change import change_of_data, changed_files
 from geofit.project.document import Document
@@ -139,6 +141,59 @@ def test_the_change_is_undone_and_redone_and_the_earlier_surface_made_again(site
     assert document.comparison(NAME) is None
     change.command.redo(document)
     assert len(document.site.horizons[NAME]) == 85
+
+
+def test_lines_that_were_inserted_make_nothing_stale_but_their_horizon(site_file):
+    folder = site_file.parent
+    others = [line.replace(NAME, "top").replace("B", "T") for line in rows(40, 2)]
+    written(folder, [*rows(60, 1), *others])
+    # A site file that names horizons has these alone.
+    site_file.write_text('[site]\nname = "Dam"\n[[picks]]\nfile = "picks.csv"\nkind = "borehole"\n', encoding="utf-8")
+    document = opened(site_file)
+    ExcludeRows("top", (Row("picks.csv", 65), Row("picks.csv", 70))).redo(document)
+    fitted(document)
+    first = fitted(document, "top")
+    pull = MoveToPoint("top", 3, 1.0)
+    document.put(replace(first, edits=(pull.edit,)), edited(document.surface("top"), pull.edit))
+    pull.redo(document)
+    surface, residual = document.surface("top"), document.listing("top").residual
+    document.put_prediction(document.state.provenances["top"], examine(surface))
+    # A new row of one horizon, at the head of the file that has both.
+    written(folder, [*rows(1, 9, "NEW"), *rows(60, 1), *others])
+    change = change_of_data(document.state, document.read, read_site(site_file))
+    assert change.lost == ()
+    assert list(change.command.earlier) == [NAME]
+    document.know(read_site(site_file))
+    command = command_from(json.loads(json.dumps(change.command.to_data())))
+    assert command == change.command
+    for line in (66, 65, 66):
+        (command.redo if line == 66 else command.undo)(document)
+        assert document.stale(NAME) == (line == 66)
+        assert not document.stale("top")
+        assert document.missing() == ()
+        provenance, kept = document.state.provenances["top"], document.surface("top")
+        assert provenance.edits == (pull.edit,)
+        assert min(row.row for row in provenance.excluded) == line
+        assert np.array_equal(kept.points.row, document.points("top").row)
+        assert np.array_equal(kept.patches[0].control, surface.patches[0].control)
+        assert np.array_equal(document.listing("top").residual, residual)
+        assert document.prediction("top") is not None
+    again = make(provenance, document.given_for(provenance))
+    assert np.array_equal(again.patches[0].control, surface.patches[0].control)
+
+
+def test_a_corrected_row_among_moved_ones_makes_its_horizon_stale(site_file):
+    document = opened(site_file)
+    fitted(document)
+    # In another order the points are the same, but the fit sums them otherwise, and edits count them.
+    for lines in (
+        [*rows(60, 1)[1:], rows(60, 1)[0]],
+        [rows(60, 1)[0].rsplit(",", 2)[0] + f",77.0,{NAME}", *rows(60, 1)[1:]],
+    ):
+        written(site_file.parent, lines)
+        change = change_of_data(document.state, document.read, read_site(site_file))
+        assert change.command.carried == {}
+        assert list(change.command.earlier) == [NAME]
 
 
 def test_a_project_keeps_the_earlier_state(site_file, tmp_path):
