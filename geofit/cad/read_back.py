@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["attribute_check", "read_back", "self_intersects"]
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 #: Limits that the file must keep: metres, metres, degrees, metres.
 CORE, GAP, ANGLE, EDGE = 1e-6, 1e-6, 0.1, 1e-6
@@ -52,7 +53,7 @@ def read_back(
         What was read, as OpenCASCADE's shape.
     found : Surface
         The same as patches, whole even where the outline trims them: points beyond it are measured as in the
-        fit.
+        fit. Those on patches that lie wholly beyond it, and so are not in the file, are left out.
     written : TopoDS_Shell
         The shell that was handed to the writer.
     path : Path
@@ -67,10 +68,12 @@ def read_back(
     """
     from OCP.BRepCheck import BRepCheck_Analyzer
 
-    distance, how = _distances(surface, shape, found)
+    xyz, is_core = surface.points.xyz, _core(surface)
+    written_here = ~_on_absent_patch(surface, shape)
+    distance, how = _distances(xyz[written_here], is_core[written_here], shape, found)
     squares = float(np.sum(distance**2))
     sigma = float(np.sqrt(squares / (len(distance) - 1))) if len(distance) > 1 else float("nan")
-    core = distance[surface.core] if len(surface.core) == len(distance) else distance[:0]
+    core = distance[is_core[written_here]]
     core_max = float(np.abs(core).max()) if core.size else float("nan")
     seams = _seams(shape)
     valid = bool(BRepCheck_Analyzer(shape.shape).IsValid())
@@ -90,12 +93,7 @@ def read_back(
             core_max,
             CORE,
             "m",
-            message(
-                "cad.core-points-distance",
-                "largest distance of {count} core points from the surface in the file ({how})",
-                count=core.size,
-                how=how,
-            ),
+            _core_words(core.size, how, ~written_here, is_core),
         ),
         Check("read-back seam gap", gap <= GAP, gap, GAP, "m", _words(seams, "gap", "m")),
         Check(
@@ -181,7 +179,7 @@ def read_back(
         faces=len(found.patches),
         sigma=sigma,
         core_max_abs=core_max,
-        max_abs=float(np.abs(distance).max(initial=0.0)),
+        max_abs=float(np.abs(distance).max()) if len(distance) else float("nan"),
         seams=seams,
         brep_valid=valid,
         free_edges=len(free),
@@ -224,9 +222,52 @@ def _words(seams: tuple[Seam, ...], field: str, unit: str) -> Message:
     )
 
 
-def _distances(surface: FittedSurface, shape: FileShape, found: Surface) -> tuple[Floats, Message]:
-    """Signed distances: sign and face by our projection, lengths by OpenCASCADE's in map coordinates."""
+def _core(surface: FittedSurface) -> Bools:
+    """Return (n,) which points are in the core; a surface that was read has none."""
+    n = len(surface.points.xyz)
+    return np.asarray(surface.core if len(surface.core) == n else np.zeros(n), bool)
+
+
+def _on_absent_patch(surface: FittedSurface, shape: FileShape) -> Bools:
+    """Return (n,) which points lie outside the outline on a patch without a face in the file.
+
+    From there the file's nearest face is another patch: the distance would be the gap to it.
+    """
+    import shapely
+
     xyz = surface.points.xyz
+    found = np.zeros(len(xyz), bool)
+    absent = [k for k, patch in enumerate(surface.patches) if patch.name not in shape.face_names]
+    if surface.outline is None or not absent or not len(xyz):
+        return found
+    area = shapely.Polygon(surface.outline)
+    shapely.prepare(area)
+    outside = np.flatnonzero(~shapely.dwithin(area, shapely.points(xyz[:, :2]), CORE))
+    found[outside] = np.isin(project(surface.patches, xyz[outside] - surface.origin).patch, absent)
+    return found
+
+
+def _core_words(count: int, how: Message, left_out: Bools, is_core: Bools) -> Message:
+    if not left_out.any():
+        return message(
+            "cad.core-points-distance",
+            "largest distance of {count} core points from the surface in the file ({how})",
+            count=count,
+            how=how,
+        )
+    return message(
+        "cad.core-points-distance-left-out",
+        "largest distance of {count} core points from the surface in the file ({how}); points left out because their "
+        "patches lie outside the study area and are not in the file: {left}, of these in the core: {core}",
+        count=count,
+        how=how,
+        left=int(left_out.sum()),
+        core=int((left_out & is_core).sum()),
+    )
+
+
+def _distances(xyz: Floats, is_core: Bools, shape: FileShape, found: Surface) -> tuple[Floats, Message]:
+    """Signed distances: sign and face by our projection, lengths by OpenCASCADE's in map coordinates."""
     if not len(xyz):
         return np.empty(0), message("cad.no-points", "no points")
     ours = project(found.patches, xyz - found.origin)
@@ -234,7 +275,7 @@ def _distances(surface: FittedSurface, shape: FileShape, found: Surface) -> tupl
     chosen = np.arange(len(xyz))
     how = message("cad.projection-of-opencascade", "OpenCASCADE's projection")
     if len(xyz) > MEASURED:
-        core = np.flatnonzero(surface.core) if len(surface.core) == len(xyz) else chosen[:0]
+        core = np.flatnonzero(is_core)
         spread = np.unique(np.linspace(0, len(xyz) - 1, MEASURED // 4).astype(int))
         chosen = np.unique(np.concatenate([core[:: max(1, len(core) // MEASURED)], spread]))
     length = _occ_lengths(shape, xyz, ours, chosen)

@@ -53,7 +53,6 @@ def all_orders(
 
 def separated(surfaces: Mapping[str, HorizonFit], minimum: float, site: Site, *, progress: Progress) -> Separation:
     """Push horizons apart, given the highest first; those that moved are asked again what the ``site`` says of them."""
-    tell(progress, "separate horizons", 0.1)
-    found = separate_horizons(surfaces, tuple(surfaces), minimum)
+    found = separate_horizons(surfaces, tuple(surfaces), minimum, progress)
     moved = {name: add_site_checks(found.surfaces[name], site) for name in found.moved}
     return replace(found, surfaces={**found.surfaces, **moved})

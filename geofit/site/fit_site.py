@@ -17,7 +17,7 @@ from geofit.data.given import arguments_checked
 from geofit.data.guard import guarded
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
-from geofit.data.progress import Progress, tell
+from geofit.data.progress import Progress, tell, within
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
@@ -119,7 +119,7 @@ def fit_site(
         found = _side_by_side(site, names, changes or {}, progress, fitted or _deaf, where)
     if separate:
         tell(progress, "separation", 1.0)
-        _separate_horizons(site, found)
+        _separate_horizons(site, found, within(progress, 1.0, 1.0))
     found.surfaces = {
         name: add_site_checks(surface, site, "" if found.horizon[name] == name else found.horizon[name])
         for name, surface in found.surfaces.items()
@@ -271,7 +271,7 @@ def _noted(block: HorizonFit, notes: Sequence[Message]) -> HorizonFit:
     return block.with_(accuracy=replace(block.accuracy, notes=(*block.accuracy.notes, *notes)))
 
 
-def _separate_horizons(site: Site, found: SiteFit) -> None:
+def _separate_horizons(site: Site, found: SiteFit, progress: Progress | None) -> None:
     """Separation the horizons of the order that are one surface each; say which are not."""
     sequence = [name for name in site.order if name in found.surfaces]
     blocked = [name for name in site.order if name in found.horizon.values() and name not in found.surfaces]
@@ -293,7 +293,7 @@ def _separate_horizons(site: Site, found: SiteFit) -> None:
         )
         return
     try:
-        done = separate_horizons(found.surfaces, sequence)
+        done = separate_horizons(found.surfaces, sequence, progress=progress)
     except SettingsError as error:
         found.warnings += (
             message("site.not-separated", "not separated: {reason}", reason=error).with_severity("warning"),

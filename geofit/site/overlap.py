@@ -8,6 +8,7 @@ are settled, and the lines of crossing are exact on its edges.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -39,8 +40,8 @@ WINDOW, SHRINK, CLOSE = 9, 0.3, 1e-5
 STARTS = 500
 #: Nodes below zero that settle area and volume (to some 0.1 %), and how fine a cell may be cut for them.
 ENOUGH, FINEST = 4_000, 64
-#: Nodes of one window at most.
-MOST = 2_000_000
+#: Nodes of one window at most, and of the one for the mean thickness.
+MOST, MANY = 2_000_000, 100_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +118,7 @@ class Overlap:
     @property
     def mean(self) -> float:
         """Mean thickness over the common area, metres."""
-        return _mean(self._windows[0])
+        return _mean(self._finer(self.upper))
 
     @property
     def thinnest(self) -> Extreme:
@@ -133,7 +134,22 @@ class Overlap:
 
     @cached_property
     def _windows(self) -> tuple[_Window, _Window]:
-        return self.window(self.upper.lattice(PIECES)), self.window(self.lower.lattice(PIECES))
+        coarse = self.window(self.upper.lattice(PIECES)), self.window(self.lower.lattice(PIECES))
+        if np.isfinite(np.concatenate([window.value.ravel() for window in coarse])).any():
+            return coarse
+        # The common area lies between the nodes of both lattices.
+        return self._finer(self.upper), self._finer(self.lower)
+
+    def _finer(self, field: HeightField) -> _Window:
+        """Return the thickness on the part of a field's lattice around the common area, its cells cut."""
+        import shapely
+
+        plan = field.lattice(PIECES)
+        x0, y0, x1, y1 = shapely.bounds(self.area)
+        at = np.argwhere(_holding(plan, np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])))
+        (i, j), (last_i, last_j) = at.min(axis=0), at.max(axis=0)
+        plan = plan[i : last_i + 2, j : last_j + 2]
+        return self.window(_between(plan, int(np.ceil(np.sqrt(MANY / plan[..., 0].size)))))
 
     @cached_property
     def _extremes(self) -> tuple[Floats, Floats]:
@@ -155,12 +171,17 @@ class Overlap:
         return np.concatenate([*nodes, minima[minima[:, 2] < -TOUCH, :2]])
 
     def window(self, plan: Floats, active: Bools | None = None) -> _Window:
-        """Return the thickness on a lattice; nodes just beyond the common area are drawn onto its edge."""
+        """Return the thickness on a lattice; nodes just beyond the common area are drawn onto its edge.
+
+        Only the ``active`` nodes are looked at; those farther outside have no thickness, active or not.
+        """
         import shapely
 
         plan = plan.copy()
         inside = shapely.intersects_xy(self.area, plan[..., 0], plan[..., 1])
-        near = _dilated(inside) if active is None else active
+        near = _dilated(inside)
+        if active is not None:
+            near &= active
         edge = near & ~inside
         plan[edge] = onto(self.area, plan[edge])
         value = np.full(inside.shape, np.nan)
@@ -186,25 +207,30 @@ class Overlap:
 
     def crossings(self, ground: Ground | None = None) -> tuple[HorizonCrossing, ...]:
         """Return the crossings, the largest volume first; a ground shows which of them lie above it."""
-        from scipy.ndimage import find_objects, label
-
         plan = self.upper.lattice(PIECES)
-        # Gather the cells around all that lies below zero, and measure each group of them.
+        # Gather the cells around all that lies below zero, in groups.
         active = _dilated(_holding(plan, self.below()))
-        while active.any():
-            groups, _ = label(active, np.ones((3, 3)))
-            found, spread = [], active.copy()
-            for number, tight in enumerate(find_objects(groups), start=1):
-                box = _wider(tight)
-                mine = groups[box] == number
-                fine, pieces = self._fine(plan[box[0].start : box[0].stop + 1, box[1].start : box[1].stop + 1], mine)
+        while True:
+            spread = active.copy()
+            for box, mine, fine, pieces in self._groups(plan, active):
                 # Where an overlap reaches the rim of the cells that were cut, those beyond it belong to it too.
                 spread[box] |= _dilated(_touched(np.argwhere(fine.value < -TOUCH), pieces, mine.shape))
-                found += self._measured(fine, ground)
             if np.array_equal(spread, active):
-                return tuple(sorted(found, key=lambda one: -one.volume))
+                break
             active = spread
-        return ()
+        # To cut the cells once more takes less time than to measure in each round, and less memory than to keep them.
+        found = [one for _, _, fine, _ in self._groups(plan, active) for one in self._measured(fine, ground)]
+        return tuple(sorted(found, key=lambda one: -one.volume))
+
+    def _groups(self, plan: Floats, active: Bools) -> Iterator[tuple[tuple[slice, ...], Bools, _Window, int]]:
+        """Return each group of active cells: its box, which cells of the box, its window, the pieces of a cell."""
+        from scipy.ndimage import find_objects, label
+
+        groups, _ = label(active, np.ones((3, 3)))
+        for number, tight in enumerate(find_objects(groups), start=1):
+            box = _wider(tight)
+            mine = groups[box] == number
+            yield box, mine, *self._fine(plan[box[0].start : box[0].stop + 1, box[1].start : box[1].stop + 1], mine)
 
     def _fine(self, plan: Floats, cells: Bools) -> tuple[_Window, int]:
         """Cut the wanted cells of a box until enough nodes lie below zero; return how many pieces that took."""
@@ -265,7 +291,7 @@ def _extremes(window: _Window, sign: float) -> tuple[Floats, Floats]:
     low = minimum_filter(np.where(np.isnan(height), np.inf, height), 3, mode="nearest")
     high = maximum_filter(np.where(np.isnan(height), -np.inf, height), 3, mode="nearest")
     # Between its neighbours the thickness falls no further below a node than it rises around it.
-    enough = max(float(np.nanmin(height)), 0.0) if sign > 0 else float(np.nanmin(height))
+    enough = max(float(low.min()), 0.0) if sign > 0 else float(low.min())
     with np.errstate(invalid="ignore"):
         wanted = (height == low) & (2 * height - high <= enough)
     at = np.argwhere(wanted)

@@ -22,6 +22,7 @@ from geofit.data.columns import LARGEST
 from geofit.data.errors import SettingsError
 from geofit.data.given import FIT, arguments_checked, require_kind
 from geofit.data.messages import EMPTY, Message, message
+from geofit.data.progress import Progress, tell, within
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.site.height_field import HeightField
@@ -37,6 +38,8 @@ Floats = NDArray[np.float64]
 MARGIN, WIDEST = 1e-3, 0.05
 #: Rounds of looking for what is still too thin, of multipliers, and of Newton steps.
 ROUNDS, MULTIPLIERS, STEPS = 8, 12, 60
+#: With the widest margin, a round that leaves as many places and more than this share of what is missing is the last.
+STALLED = 0.9
 #: Weight of a place that is too thin, and of an approximated point, against the square of a change of control point.
 PENALTY, HOLD = 1e4, 1e2
 #: A place is pinned by exact points where they leave less than this share of its freedom to move.
@@ -89,7 +92,12 @@ class Separation:
 
 
 @arguments_checked
-def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str], minimum: float = 0.0) -> Separation:
+def separate_horizons(
+    surfaces: Mapping[str, HorizonFit],
+    sequence: Sequence[str],
+    minimum: float = 0.0,
+    progress: Progress | None = None,
+) -> Separation:
     """Push horizons of a sequence apart until each is at least ``minimum`` metres above the next.
 
     Parameters
@@ -100,6 +108,8 @@ def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str
         Names from the top to the bottom.
     minimum : float
         Least thickness, metres.
+    progress : callable, optional
+        Called as ``progress(stage, fraction)``; returning False stops the separation.
 
     Returns
     -------
@@ -109,6 +119,8 @@ def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str
 
     Raises
     ------
+    Cancelled
+        If ``progress`` returned False.
     ArgumentError
         If a surface is not a fit.
     SettingsError
@@ -136,7 +148,8 @@ def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str
         )
     stack = _Stack([_Layer(surfaces[name]) for name in sequence], minimum)
     with threadpool_limits(limits=1):
-        stack.separate()
+        stack.separate(within(progress, 0.0, 0.9))
+        tell(progress, "separate horizons", 0.9)
         result, moved = dict(surfaces), {}
         for layer in stack.layers:
             if layer.change.any():
@@ -222,15 +235,15 @@ class _Stack:
         found = {(i, j): Overlap.between(lowered[i], reliefs[j]) for i, j in self.pairs}
         return {pair: overlap for pair, overlap in found.items() if overlap is not None}
 
-    def separate(self) -> None:
+    def separate(self, progress: Progress | None) -> None:
         """Move control points until nothing that can move is too thin."""
         rows: list[csr_array] = []
         thickness: list[Floats] = []
         for pair, overlap in self.given.items():
             self._hold(pair, overlap.nodes(), rows, thickness)
         thin = [given < 0 for given in thickness]
-        overlaps, margin = self.given, MARGIN
-        for _ in range(ROUNDS):
+        overlaps, margin, former = self.given, MARGIN, (0, np.inf)
+        for number in range(ROUNDS):
             for pair, overlap in overlaps.items():
                 self._hold(pair, overlap.below(), rows, thickness)
             if len(rows) == len(thin) and overlaps is not self.given:
@@ -239,10 +252,15 @@ class _Stack:
             if not np.concatenate(thin).any():
                 return
             lack = margin - np.concatenate(thickness)
-            if not self._solve(csr_array(vstack(rows)), lack, np.concatenate(thin)):
+            part = within(progress, number / ROUNDS, (number + 1) / ROUNDS)
+            if not self._solve(csr_array(vstack(rows)), lack, np.concatenate(thin), part):
                 return
             overlaps = self.overlaps()
             worst = max((-overlap.thinnest[2] for overlap in overlaps.values()), default=0.0)
+            left = sum(len(overlap.below()) for overlap in overlaps.values()), worst
+            if margin == WIDEST and left[0] >= former[0] > 0 and worst > STALLED * former[1]:
+                return
+            former = left
             margin = min(margin + 2 * max(worst, 0.0), WIDEST)
 
     def _hold(self, pair: tuple[int, int], places: Floats, rows: list[csr_array], thickness: list[Floats]) -> None:
@@ -274,7 +292,7 @@ class _Stack:
         parts[pair[1]] = -self.layers[pair[1]].matrix(places)
         return csr_array(hstack(parts))
 
-    def _solve(self, rows: csr_array, lack: Floats, thin: NDArray[np.bool_]) -> bool:
+    def _solve(self, rows: csr_array, lack: Floats, thin: NDArray[np.bool_], progress: Progress | None) -> bool:
         """Find the smallest change of what acts at thin places; return whether it differs from the one before."""
         movable = np.concatenate([layer.movable for layer in self.layers])
         acting = np.zeros(movable.size, bool)
@@ -293,14 +311,19 @@ class _Stack:
         exact = csr_array(exact[np.unique(exact.nonzero()[0])])
         before = np.concatenate([layer.change for layer in self.layers])
         change = np.zeros(movable.size)
-        change[free] = _minimum_norm_correction(csr_array(rows[held]), lack[held], exact, loose, before[free])
+        change[free] = _minimum_norm_correction(csr_array(rows[held]), lack[held], exact, loose, before[free], progress)
         for layer, first in zip(self.layers, self.start, strict=False):
             layer.change = change[first : first + layer.change.size]
         return bool(np.abs(change - before).max() > STILL)
 
 
 def _minimum_norm_correction(
-    rows: csr_array, lack: Floats, exact: csr_array, loose: csr_array, start: Floats
+    rows: csr_array,
+    lack: Floats,
+    exact: csr_array,
+    loose: csr_array,
+    start: Floats,
+    progress: Progress | None,
 ) -> Floats:
     """Return the smallest x with rows @ x >= lack where that is free to be, exact @ x = 0, and loose @ x small.
 
@@ -312,6 +335,8 @@ def _minimum_norm_correction(
         What the thickness must gain, metres.
     start : (size,) array
         A change to begin with.
+    progress : callable or None
+        Called before each Newton step.
     """
     size, count = rows.shape[1], exact.shape[0]
     exact = csr_array(diags_array(1 / np.sqrt(exact.power(2).sum(axis=1))) @ exact)
@@ -320,9 +345,10 @@ def _minimum_norm_correction(
     rows, lack = csr_array(rows[free]), lack[free]
     base = eye_array(size) + HOLD * (loose.T @ loose)
     change, force = start, np.zeros(len(lack))
-    for _ in range(MULTIPLIERS):
+    for number in range(MULTIPLIERS):
         wanted = lack + force / PENALTY
-        for _ in range(STEPS):
+        for k in range(STEPS):
+            tell(progress, "separate horizons", (number + k / STEPS) / MULTIPLIERS)
             active = wanted > rows @ change
             part = csr_array(rows[active])
             system, right = base + PENALTY * (part.T @ part), PENALTY * (part.T @ wanted[active])
@@ -331,6 +357,9 @@ def _minimum_norm_correction(
                 right = np.append(right, np.zeros(count))
             step = splu(csc_array(system)).solve(right)[:size] - change
             share = _share(step, change, base, rows @ step, wanted - rows @ change)
+            if not share:
+                # Rounding alone is left: every further step would be this one again.
+                break
             change = change + share * step
             if np.abs(step).max() <= STILL or (share == 1 and np.array_equal(active, wanted > rows @ change)):
                 break

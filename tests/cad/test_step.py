@@ -170,6 +170,43 @@ def test_trimmed_horizon(tmp_path):
     assert np.isnan(z[1])
 
 
+def without_patch(x, y):
+    """A study area with a notch from (x, y) on."""
+    return [(0, 0), (1000, 0), (1000, y), (x, y), (x, 700), (0, 700)]
+
+
+def test_points_on_a_patch_that_the_file_does_not_contain_are_left_out_and_counted(tmp_path):
+    whole, parts = nine()
+    points, core, d = sampled(whole)
+    far = parts[-1].control.min(axis=(0, 1))[:2] - 20.0
+    surface = horizon(parts, points, core, outline=without_patch(*far))
+    absent = surface.project(points).patch == len(parts) - 1
+    found = write_step({"T1": surface}, tmp_path / "l.step")["T1"]
+    assert found.faces == len(parts) - 1
+    assert found.passed
+    # Points in the notch on the other patches are measured: the file carries those whole.
+    assert found.core_max_abs <= 1e-8
+    assert found.max_abs == pytest.approx(np.abs(d[~absent]).max(), abs=1e-7)
+    assert found.sigma == pytest.approx(np.sqrt((d[~absent] ** 2).sum() / ((~absent).sum() - 1)), rel=1e-6)
+    text = checks(found)["core"].text
+    assert text.code == "cad.core-points-distance-left-out"
+    figures = {key: text.params[key] for key in ("count", "left", "core")}
+    assert figures == {"count": (core & ~absent).sum(), "left": absent.sum(), "core": (core & absent).sum()}
+    assert figures["core"] > 0
+
+
+def test_a_core_outside_the_study_area_is_not_measured_in_the_file(tmp_path):
+    whole, parts = nine()
+    points, core, _ = sampled(whole)
+    on_last = horizon(parts, points).project(points).patch == len(parts) - 1
+    far = parts[-1].control.min(axis=(0, 1))[:2] - 1.0
+    surface = horizon(parts, points[on_last], core[on_last], outline=without_patch(*far))
+    found = write_step({"T1": surface}, tmp_path / "l.step")["T1"]
+    assert checks(found)["core"].passed is None
+    assert np.isnan([found.core_max_abs, found.sigma, found.max_abs]).all()
+    assert found.passed
+
+
 def test_overturned_fold(tmp_path):
     patch = fold()
     u = np.unique(patch.knots_u)

@@ -185,6 +185,11 @@ def test_a_repair_pushes_crossing_horizons_apart_and_checks_them_again():
         assert np.abs(surface.distance(surface.points.xyz) - surface.accuracy.residuals).max() < 1e-6
 
 
+def test_a_repair_can_be_stopped():
+    with pytest.raises(Cancelled):
+        fit_site(crossing(), ["U", "L"], progress=lambda stage, _: stage != "separate horizons", separate=True)
+
+
 def test_a_repair_says_what_it_leaves_alone(site):
     found = SiteFit()
     assert compare_in_order(site, found) == ()

@@ -16,6 +16,7 @@ from geofit.sample import write_site
 from geofit.site.height_field import HeightField
 from geofit.site.order import compare_horizons, orders, thickness
 from geofit.site.overlap import TOUCH
+from geofit.site.zero_contours import zero_contours
 from geofit.splines import bspline
 
 
@@ -102,6 +103,20 @@ def test_planes_that_cross_share_a_wedge():
     assert (order.min, order.mean, order.max) == pytest.approx((-40.0, 10.0, 60.0), rel=1e-5)
 
 
+def test_a_crossing_that_spreads_over_many_cells_is_measured_once(monkeypatch):
+    measured = []
+
+    def contours(*args):
+        measured.append(args)
+        return zero_contours(*args)
+
+    monkeypatch.setattr("geofit.site.overlap.zero_contours", contours)
+    # A trough 2 m wide between the nodes, straight across the area: its cells are gathered in several rounds.
+    order = compare_horizons(surface(lambda x, y: 0.01 * (0.6 * x + 0.8 * y - 501.0) ** 2 - 0.01), flat(nu=11, nv=9))
+    assert order.crossed_area == pytest.approx(2.0 * np.hypot(501 / 0.6, 501 / 0.8), rel=0.1)
+    assert len(measured) == len(order.crossings)
+
+
 def test_a_crossing_within_one_cell_of_the_lattice_is_found():
     spans = 50.0
     patch = height_field(23, 17, size=(20 * spans, 14 * spans), z=lambda x, y: np.zeros_like(x))
@@ -143,6 +158,41 @@ def test_the_mean_thickness_is_that_of_the_common_area():
     assert (order.min, order.max) == pytest.approx((32.0, 44.0), abs=1e-4)
     np.testing.assert_allclose(local(*order.thinnest), outline[0], atol=1e-3)
     assert order.check().passed
+
+
+ELL = np.array([(100.0, 100.0), (900.0, 100.0), (900.0, 250.0), (350.0, 250.0), (350.0, 600.0), (100.0, 600.0)])
+BAY = np.array([(100, 100), (900, 100), (900, 600), (650, 600), (650, 250), (300, 250), (300, 600), (100, 600.0)])
+TRIANGLE = np.array([(120.0, 60.0), (880.0, 180.0), (260.0, 580.0)])
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3])
+@pytest.mark.parametrize(
+    ("above", "below"),
+    [(ELL, ELL), (None, ELL), (BAY, None), (TRIANGLE, ELL), (ELL, BAY)],
+    ids=["LL", "L", "U", "TL", "LU"],
+)
+def test_a_concave_area_is_measured_as_a_raster_measures_it(above, below, turn):
+    upper = surface(lambda x, y: 8 * np.sin(x / 130) + 0.01 * y, "up", outline=above, nu=14, nv=11)
+    net = {"nu": 19, "nv": 13, "turn": turn, "size": (1100.0, 900.0), "shift": (60.0, -150.0)}
+    lower = surface(lambda x, y: 5 * np.cos(y / 90) + 4, "low", outline=below, **net)
+    order = compare_horizons(upper, lower)
+    x, y = ORIGIN[0] + np.arange(0.5, 1000), ORIGIN[1] + np.arange(0.5, 700)
+    between = thickness(upper, lower, x, y[:, None])
+    between = between[np.isfinite(between)]
+    crossed = between < 0
+    assert 0.3 < crossed.mean() < 0.9
+    assert order.area == pytest.approx(between.size, rel=2e-3)
+    assert order.mean == pytest.approx(between.mean(), rel=2e-3)
+    assert order.crossed_area == pytest.approx(crossed.sum(), rel=2e-3)
+    assert order.crossed_volume == pytest.approx(-between[crossed].sum(), rel=2e-3)
+
+
+def test_an_area_between_the_nodes_of_both_lattices_is_measured():
+    outline = np.array([(503.0, 352.0), (513.0, 352.0), (505.0, 362.0)])
+    order = compare_horizons(surface(lambda x, y: 30 + 0.02 * x, outline=outline, nu=9, nv=9), flat(nu=9, nv=9))
+    assert (order.min, order.mean, order.max) == pytest.approx((40.06, 30 + 0.02 * 507, 40.26), abs=1e-4)
+    (crossing,) = compare_horizons(flat(nu=9, nv=9), surface(lambda x, y: 1 + 0 * x, outline=outline)).crossings
+    assert (crossing.area, crossing.volume) == pytest.approx((50.0, 50.0), rel=1e-3)
 
 
 def test_horizons_that_touch_do_not_cross():

@@ -9,7 +9,7 @@ from truth import EASTING, NORTHING, hills
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.cad.sewing import shell
-from geofit.data.errors import SettingsError
+from geofit.data.errors import Cancelled, SettingsError
 from geofit.data.messages import Message
 from geofit.site.order import compare_horizons, orders
 from geofit.site.separate import separate_horizons
@@ -121,6 +121,28 @@ def test_three_horizons_are_pushed_apart_together(crossing):
         assert order.crossed_volume == 0 or (order.upper, order.lower) in left
     for surface in found.surfaces.values():
         np.testing.assert_allclose(surface.accuracy.residuals[surface.core], 0, atol=1e-8)
+
+
+def test_progress_is_told_at_each_step_and_stops_the_separation(crossing):
+    heard = []
+    separate_horizons(crossing, ["top", "base"], progress=lambda stage, share: heard.append((stage, share)))
+    stages, shares = zip(*heard, strict=True)
+    assert set(stages) == {"separate horizons"}
+    assert len(shares) > 10
+    assert list(shares) == sorted(shares)
+    assert 0 <= shares[0] < shares[-1] <= 1
+    few = iter(range(5))
+    with pytest.raises(Cancelled):
+        separate_horizons(crossing, ["top", "base"], progress=lambda *_: next(few) < 4)
+    assert next(few, None) is None
+
+
+def test_a_step_that_moves_nothing_is_not_made_again(crossing):
+    three = {**crossing, "middle": fit(4, 0.4, "middle")}
+    heard = []
+    separate_horizons(three, ["top", "middle", "base"], progress=lambda *_: heard.append(1))
+    # 485 where those that move nothing were made until the last that is allowed.
+    assert len(heard) < 350
 
 
 def test_surfaces_in_order_are_handed_on_as_they_are(crossing):
