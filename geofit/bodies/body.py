@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +17,8 @@ from geofit.bodies.implicit_body import ImplicitBody
 from geofit.bodies.region import Region
 from geofit.bodies.settings import BodySettings
 from geofit.data.given import arguments_checked
+from geofit.implicit.mesh import TriangleMesh
+from geofit.implicit.volume import Extent
 
 if TYPE_CHECKING:
     from geofit.bodies.simulate import BodyVolumes
@@ -63,8 +66,10 @@ class BodyFit(ImplicitBody):
         return f"<BodyFit {self.name}: {', '.join(parts)}>"
 
     def with_accuracy(self, accuracy: BodyAccuracy) -> BodyFit:
-        """Return the body with its verdict."""
-        return replace(self, accuracy=accuracy)
+        """Return the body with its verdict, and with the meshes that this took."""
+        judged = replace(self, accuracy=accuracy)
+        vars(judged).update({name: value for name, value in vars(self).items() if name != "accuracy"})
+        return judged
 
     @property
     def field(self) -> BodyField:
@@ -117,6 +122,23 @@ class BodyFit(ImplicitBody):
         lower, upper = self.extent
         longest = float((upper - lower).max())
         return float(longest / np.clip(BETWEEN_HOLES * longest / self.region.spacing, *OVERVIEW))
+
+    @cached_property
+    def _shown(self) -> tuple[Extent, TriangleMesh]:
+        return self._measured(self.local_mesh(self.overview_spacing))
+
+    @property
+    def size(self) -> Extent:
+        """Volume and area of the body with their numerical errors, m3 and m2: see :attr:`ImplicitBody.size`."""
+        return self._shown[0]
+
+    @property
+    def overview(self) -> TriangleMesh:
+        """Closed triangles of moderate size about the local origin, made once.
+
+        Their cells are smaller than :attr:`overview_spacing` where those lose more than a fiftieth of a thin body.
+        """
+        return self._shown[1]
 
     def volumes(self, scheduler: str = "local", workers: int | None = 1) -> BodyVolumes:
         """Return P10, P50 and P90 of the volume by conditional simulation.

@@ -27,6 +27,8 @@ Height = Callable[[Floats, Floats], Floats]
 #: Share of an edge that a cut stays away from its ends.
 NODE_GAP = 1e-7
 HALVINGS = 45
+#: Heights above a surface, in sizes of a triangle, that are none: cuts lie on it but for their gaps.
+LEVEL = 1e-6
 
 
 class CuttingSurface(Protocol):
@@ -158,10 +160,16 @@ def split_mesh(mesh: TriangleMesh, height: Height, name: str = "") -> tuple[Tria
                 share=float((~np.isfinite(level)).mean()),
             )
         )
-    up = level >= 0
     nothing = mesh.only(np.zeros(len(triangles), bool))
-    if up.all() or not up.any():
-        return (mesh, nothing) if up.all() else (nothing, mesh)
+    if not len(triangles):
+        return nothing, nothing
+    size = float(np.sqrt(mesh.areas.mean()))
+    # Along an earlier cut by the same surface, rounding alone would make a piece.
+    if level.min() >= -LEVEL * size:
+        return mesh, nothing
+    if level.max() <= LEVEL * size:
+        return nothing, mesh
+    up = level >= 0
     edges = mesh.edges
     cut = edges[up[edges[:, 0]] != up[edges[:, 1]]]
     crossing = _crossings(vertices, cut, height)
@@ -186,7 +194,6 @@ def split_mesh(mesh: TriangleMesh, height: Height, name: str = "") -> tuple[Tria
             pieces[not flags[k]] += [(third, q, p), (third, p, second)]
         # Along the upper side's border, in its triangles' direction.
         segments.append((p, q) if flags[k] else (q, p))
-    size = float(np.sqrt(mesh.areas.mean()))
     added, cap = cap_triangles(all_vertices, segments, height, size, name)
     all_vertices = np.concatenate([all_vertices, added])
     found = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from geofit.bodies.active import SidedSamples, fit_active
 from geofit.bodies.data import BodyData, Prepared, prepare
-from geofit.bodies.field import BodyField
+from geofit.bodies.field import SIDES, BodyField
 from geofit.bodies.fitted import BodyRaster, Fitted
 from geofit.bodies.frame import BodyFrame
 from geofit.bodies.kernels import KERNELS, LINEAR
@@ -21,6 +22,7 @@ from geofit.bodies.settings import BodySettings
 from geofit.data.errors import FitError
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
+from geofit.implicit.lattice import Lattice, sample
 
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
@@ -31,8 +33,10 @@ Floats = NDArray[np.float64]
 
 #: Parts of the body that no data support are closed and the field is fitted again, this often at most.
 ROUNDS = 5
-#: Nodes of the raster on which such parts are looked for, along the longest side of the box.
+#: Nodes of the raster on which such parts are looked for, along the longest side of the box, and those that the extent
+#: of the body is larger than it.
 NODES = 48
+ROOM = 2
 
 
 @arguments_checked
@@ -100,7 +104,7 @@ def fit_body(
 def fit_field(data: BodyData, settings: BodySettings) -> Fitted:
     """Fit the field alone, without a verdict; parameters and errors as :func:`fit_body`."""
     start = time.perf_counter()
-    prepared = prepare(data, settings.coincidence_distance)
+    prepared = prepare(data, settings)
     region = region_of(prepared.contacts, prepared.inside, prepared.outside, settings, hole_spacing(data))
     if settings.box is not None:
         own = np.concatenate([prepared.contacts, prepared.inside])
@@ -184,26 +188,20 @@ def _survey(field: BodyField, prepared: Prepared, origin: Floats) -> tuple[BodyR
     """
     from scipy.ndimage import label, minimum_position
 
-    from geofit.implicit.lattice import Lattice, sample
-
     lattice = Lattice.around(field.lower, field.upper, cells=NODES)
     values = sample(field, lattice)
     inside = values < 0
-    places, own = [], np.argwhere(inside)
+    places = []
     for axis, step in enumerate(np.eye(3)):
         changes = np.argwhere(np.diff(inside, axis=axis))
         places.append(lattice.origin + lattice.spacing * (changes + step / 2))
-    low, high = (own.min(axis=0) - 2, own.max(axis=0) + 2) if len(own) else (np.zeros(3), np.array(lattice.shape) - 1)
-    survey = BodyRaster(
-        lattice.spacing,
-        np.concatenate(places),
-        np.maximum(lattice.origin + lattice.spacing * low, field.lower),
-        np.minimum(lattice.origin + lattice.spacing * high, field.upper),
-    )
-    parts, count = label(inside, np.ones((3, 3, 3)))
     data = np.concatenate([prepared.contacts, prepared.inside]) - origin
     first = np.floor((data - lattice.origin) / lattice.spacing).astype(int)
     corners = [tuple(np.clip(first + corner, 0, np.array(lattice.shape) - 1).T) for corner in np.ndindex(2, 2, 2)]
+    within = ((data >= field.lower) & (data <= field.upper)).all(axis=1)
+    lower, upper = _extent(field, lattice, inside, np.stack([np.stack(at, axis=1)[within] for at in corners]))
+    survey = BodyRaster(lattice.spacing, np.concatenate(places), lower, upper)
+    parts, count = label(inside, np.ones((3, 3, 3)))
     supported = {0}.union(*(np.unique(parts[at]).tolist() for at in corners))
     buried = _buried(inside, [tuple(axis[: len(prepared.contacts)] for axis in at) for at in corners])
     alone = [k for k in range(1, count + 1) if k not in supported]
@@ -211,6 +209,29 @@ def _survey(field: BodyField, prepared: Prepared, origin: Floats) -> tuple[BodyR
         return survey, np.zeros((0, 3)), buried
     deepest = np.array(minimum_position(values, parts, alone))
     return survey, np.asarray(lattice.origin + lattice.spacing * deepest + origin), buried
+
+
+def _extent(
+    field: BodyField, lattice: Lattice, inside: NDArray[np.bool_], around: NDArray[np.int64]
+) -> tuple[Floats, Floats]:
+    """Return corners (3,) of a box around the body, from the nodes inside it and those around each datum, (8, n, 3).
+
+    A body thinner than the raster has nodes inside in some places only, or none: then the box holds all data, and
+    grows until the body does not reach its sides.
+    """
+    nodes = np.argwhere(inside)
+    thin = not inside[tuple(around.T)].any(axis=1).all()
+    low = np.concatenate([nodes - ROOM, *(around - 1 if thin else ())]).min(axis=0)
+    high = np.concatenate([nodes + ROOM, *(around + 1 if thin else ())]).max(axis=0)
+    while True:
+        lower = np.maximum(lattice.origin + lattice.spacing * low, field.lower)
+        upper = np.minimum(lattice.origin + lattice.spacing * high, field.upper)
+        reached = replace(field, lower=lower, upper=upper).reaches() if thin else ()
+        below, above = np.array([side in reached for side in SIDES]).reshape(3, 2).T
+        below, above = below & (lower > field.lower), above & (upper < field.upper)
+        if not (below | above).any():
+            return lower, upper
+        low, high = low - ROOM * below, high + ROOM * above
 
 
 def _buried(inside: NDArray[np.bool_], corners: Sequence[tuple[NDArray[np.int64], ...]]) -> float:

@@ -107,7 +107,7 @@ def section_planes(outlines: Sequence[Outline]) -> tuple[SectionPlane, ...]:
     Raises
     ------
     PointsError
-        If the outlines of a section do not lie on one plane, or bound no area.
+        If the outlines of a section do not lie on one plane, bound no area, or cross themselves or each other.
     """
     return _planes(_distinct(outlines)[0])
 
@@ -131,6 +131,7 @@ def _planes(outlines: Sequence[Outline]) -> tuple[SectionPlane, ...]:
                 )
             )
         flat = [(ring - origin) @ axes[:2].T for ring in rings]
+        _refuse_crossing(name, flat, origin, axes[:2])
         if any(abs(_area(ring)) < 1e-9 * sizes[0] ** 2 for ring in flat):
             raise PointsError(
                 message(
@@ -141,6 +142,49 @@ def _planes(outlines: Sequence[Outline]) -> tuple[SectionPlane, ...]:
             )
         planes.append(SectionPlane(name, origin, axes[:2], tuple(_turned(flat))))
     return tuple(planes)
+
+
+def _refuse_crossing(name: str, rings: Sequence[Floats], origin: Floats, axes: Floats) -> None:
+    """Refuse rings (k, 2) that cross themselves or each other: they do not say what lies inside.
+
+    Kinks and overlaps below :data:`SAME` of a ring's area are left to the drawing's accuracy.
+    """
+    import shapely
+
+    polygons = [shapely.Polygon(ring) for ring in rings]
+    sound = [shapely.make_valid(polygon) for polygon in polygons]
+    for ring, polygon, whole in zip(rings, polygons, sound, strict=True):
+        if abs(whole.area - abs(_area(ring))) > SAME * whole.area:
+            # Split where it crosses: the first part ends there.
+            crossing = shapely.get_coordinates(shapely.get_parts(shapely.node(polygon.exterior))[0])[-1]
+            raise PointsError(
+                message(
+                    "bodies.outline-crosses-itself",
+                    "An outline of section '{section}' crosses itself at {place}. Draw each part of the body and each "
+                    "hole as an outline of its own.",
+                    section=name,
+                    place=_words(crossing, origin, axes),
+                )
+            )
+    for first, second in shapely.STRtree(sound).query(sound, predicate="intersects").T.tolist():
+        least = min(sound[first].area, sound[second].area)
+        shared = shapely.intersection(sound[first], sound[second]).area
+        if first < second and SAME * least < shared < (1 - SAME) * least:
+            crossing = shapely.get_coordinates(shapely.intersection(sound[first].boundary, sound[second].boundary))
+            raise PointsError(
+                message(
+                    "bodies.outlines-cross",
+                    "Two outlines of section '{section}' cross at {place}. Draw them as one outline, or apart; one "
+                    "that lies within another is a hole.",
+                    section=name,
+                    place=_words(crossing[0], origin, axes),
+                )
+            )
+
+
+def _words(place: Floats, origin: Floats, axes: Floats) -> str:
+    """Return map coordinates of a place (2,) on a plane, in words."""
+    return ", ".join(f"{value:.2f}" for value in (origin + place @ axes).tolist())
 
 
 def from_outlines(outlines: Sequence[Outline], step: float | None = None, *, margin: float | None = None) -> BodyData:
@@ -167,7 +211,7 @@ def from_outlines(outlines: Sequence[Outline], step: float | None = None, *, mar
     Raises
     ------
     PointsError
-        If outlines are not flat, or bound no area.
+        If outlines are not flat, bound no area, or cross themselves or each other.
     SettingsError
         If no outline is given, or a length is not positive.
     """
@@ -271,7 +315,7 @@ def _turned(rings: Sequence[Floats]) -> list[Floats]:
     turned = []
     for k, ring in enumerate(rings):
         others = [other for m, other in enumerate(rings) if m != k]
-        hole = bool(_within(ring[:1], others)[0])
+        hole = bool(_within(ring, others).mean() > 0.5)
         turned.append(ring if (_area(ring) > 0) != hole else ring[::-1])
     return turned
 

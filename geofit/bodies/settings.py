@@ -46,7 +46,8 @@ class BodySettings:
         (clockwise from grid north); the major axis lies in that plane, turned by ``rake`` from the line of steepest
         descent, clockwise seen from above.
     coincidence_distance : float
-        Points nearer to each other than this many metres are one point.
+        Points nearer to each other than this many metres are one point. So are contacts within half of epsilon where
+        others are 200 times as far, unless they bound a thin part of the body (:func:`geofit.bodies.data.prepare`).
     kernel : {"r3", "r"}
         Radial function of the field: r^3 is smooth; r follows the data more tightly, has a kink at each contact and
         takes no normals. It made planted bodies 7 % too small on average.

@@ -40,6 +40,17 @@ def pair() -> tuple[Truth, float]:
     return (lambda x: np.minimum(first(x), second(x))), v + w
 
 
+def plate(dip: float, thickness: float) -> Truth:
+    """Return a square plate of sides 1.2 that dips towards east by so many degrees."""
+    turn = np.radians(dip)
+    along, across = np.array([np.cos(turn), 0, -np.sin(turn)]), np.array([np.sin(turn), 0, np.cos(turn)])
+
+    def truth(x: Floats) -> Floats:
+        return np.max([np.abs(x @ along) - 0.6, np.abs(x[:, 1]) - 0.6, np.abs(x @ across) - thickness / 2], axis=0)
+
+    return truth
+
+
 def drilled(truth: Truth, seed: int, *, rows: int = 7, step: float = 0.04, named: bool = False) -> BodyData:
     """Return contacts and samples of rows x rows slightly deviated holes through the box [-1, 1]^3, in map metres."""
     rng = np.random.default_rng(seed)

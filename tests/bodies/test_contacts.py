@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from bodies.planted import ORIGIN, SIZE, drilled, ellipsoid
 from geofit.bodies.body import BodyFit
-from geofit.bodies.data import BodyData
+from geofit.bodies.data import BodyData, prepare
 from geofit.bodies.fit import fit_body
 from geofit.bodies.settings import BodySettings
 from geofit.data.errors import FitError, SettingsError
@@ -105,3 +105,52 @@ def test_inequalities_come_closer_than_all_samples_as_equalities() -> None:
         usual.append(abs((field(nodes) < 0).mean() * 8 / volume - 1))
     assert max(own) < 0.05
     assert np.median(own) < np.median(usual) / 2
+
+
+def scattered() -> BodyData:
+    """Return 150 contacts scattered on a torus of 40 and 12 m, its middle line inside, and places 10 m outside."""
+    u, v = np.random.default_rng(0).uniform(0, 2 * np.pi, (2, 150))
+    normal = np.column_stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)])
+    turn = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    middle, ring = (40 * np.column_stack([np.cos(t), np.sin(t), 0 * t]) for t in (turn, u))
+    return BodyData(ring + 12 * normal, inside=middle, outside=ring + 22 * normal)
+
+
+@pytest.mark.parametrize("apart", [1e-5, 1e-3, 1e-2])
+def test_contacts_read_twice_are_one_contact(apart: float) -> None:
+    """Zero at two places of a centimetre, a field cannot rise from one to the other: the volume was off by 11 %."""
+    once = scattered()
+    again = once.contacts + np.random.default_rng(1).normal(0, apart, once.contacts.shape)
+    twice = fit_body(BodyData(np.concatenate([once.contacts, again]), once.inside, once.outside))
+    volume = 2 * np.pi**2 * 40 * 12**2
+    assert twice.size.volume == pytest.approx(volume, rel=0.015)
+    assert twice.size.volume == pytest.approx(fit_body(once).size.volume, rel=1e-6)
+    assert twice.accuracy is not None
+    assert 0.1 * apart < twice.accuracy.sigma < 2 * apart
+    merged = [issue for issue in twice.issues if issue.kind == "coincident"]
+    assert len(merged) == len(once.contacts)
+    assert all(issue.used for issue in merged)
+
+
+def test_contacts_of_a_thin_part_stay_two() -> None:
+    """Contacts of a seam of 2 cm are as near as readings, but of one hole, of opposite normals, or around a sample."""
+    place = np.array([(x, y, 0.0) for x in range(0, 50, 10) for y in range(0, 50, 10)])
+    up, half = np.array([0, 0, 1.0]), np.array([0, 0, 0.01])
+    contacts = np.concatenate([place + half, place - half])
+    names = [f"B{k}" for k in range(len(place))]
+    normals = np.concatenate([np.tile(up, (len(place), 1)), np.tile(-up, (len(place), 1))])
+    between = BodyData(contacts, inside=place, outside=place + up)
+    named = BodyData(contacts, outside=place + up, inside=place[:1] + 5, hole=names * 2, outside_hole=names)
+    oriented = BodyData(contacts, normals=normals)
+    for data in (between, named, oriented):
+        assert len(prepare(data, BodySettings()).contacts) == len(contacts)
+    bare = BodyData(contacts, inside=place[:1] + 5, outside=place + up)
+    assert len(prepare(bare, BodySettings()).contacts) == len(place)
+
+
+def test_contacts_that_almost_coincide_are_refused() -> None:
+    """Such a body had no volume, or a field of zeros that passed with sigma 0. Contacts of one hole are not merged."""
+    once = scattered()
+    contacts = np.concatenate([once.contacts, once.contacts + np.random.default_rng(1).normal(0, 1e-5, (150, 3))])
+    with pytest.raises(FitError, match="so close to each other"):
+        fit_body(BodyData(contacts, once.inside, once.outside, hole=[f"B{k}" for k in range(150)] * 2))

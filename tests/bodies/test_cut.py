@@ -56,6 +56,17 @@ def test_two_sides_share_their_cut_face(ring: BodyFit) -> None:
     assert len(face(above.mesh)) > 50
 
 
+def test_a_surface_that_cuts_again_leaves_its_pieces_whole(ring: BodyFit) -> None:
+    """The second cut had made two pieces of volume 0, of hundreds of loose triangles."""
+    first, again = Plane("first", 2, 0.3), Plane("again", 2, 0.3)
+    once, twice = ring.cut([first]), ring.cut([first, again])
+    assert [dict(piece.sides) for piece in twice] == [
+        {"first": "above", "again": "above"},
+        {"first": "below", "again": "below"},
+    ]
+    assert [piece.volume for piece in twice] == [piece.volume for piece in once]
+
+
 def test_a_surface_beyond_the_body_leaves_it_whole(ring: BodyFit) -> None:
     (piece,) = ring.cut([Plane("ground", 300, 0)])
     assert piece.sides == {"ground": "below"}

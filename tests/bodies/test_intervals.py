@@ -11,6 +11,7 @@ import pytest
 from geofit.bodies.data import BodyData, prepare
 from geofit.bodies.fit import fit_body
 from geofit.bodies.intervals import from_intervals
+from geofit.bodies.settings import BodySettings
 from geofit.data.errors import SettingsError
 from geofit.data.site import Site
 from geofit.io.site_file import read_site
@@ -67,7 +68,7 @@ def test_coincident_contacts_with_opposite_normals_are_listed() -> None:
         outside=[[9, 9, 9]],
         normals=[[0, 0, 1], [0, 0, -1], [1, 0, 0], [np.nan] * 3, [np.nan] * 3],
     )
-    found = prepare(data, 1e-6)
+    found = prepare(data, BodySettings())
     assert len(found.contacts) == 4
     assert found.member.tolist() == [0, 0, 1, 2, 3]
     assert np.isfinite(found.normals[:, 0]).tolist() == [False, True, False, False]
@@ -76,7 +77,7 @@ def test_coincident_contacts_with_opposite_normals_are_listed() -> None:
 
 def test_samples_that_contradict_each_other_are_listed_and_left_out() -> None:
     data = BodyData([[0, 0, 0], [5, 0, 0], [0, 5, 0]], inside=[[1, 1, 1], [2, 2, 2]], outside=[[2, 2, 2], [9, 9, 9]])
-    found = prepare(data, 1e-6)
+    found = prepare(data, BodySettings())
     assert found.inside_used.tolist() == [True, False]
     assert found.outside_used.tolist() == [False, True]
     assert [issue.kind for issue in found.issues] == ["contradiction"]

@@ -146,6 +146,34 @@ def test_outlines_that_cannot_be_used() -> None:
         from_outlines([Outline("a", [[0, 0, 0], [10, 0, 0], [20, 0, 0]])])
 
 
+def circle(section: str, x: float, turn: float) -> Outline:
+    """Return a level outline of radius 20 about x that starts in a direction, radians."""
+    angle = turn + 2 * np.pi * np.arange(40) / 40
+    height = 10.0 * int(section)
+    return Outline(section, np.column_stack([x + 20 * np.cos(angle), 20 * np.sin(angle), np.full(40, height)]))
+
+
+@pytest.mark.parametrize("turn", [0.0, np.pi])
+def test_outlines_of_a_section_that_cross_are_refused_with_their_place(turn: float) -> None:
+    """Where both began within the other, both were holes: a traceback; otherwise a hole that nobody drew."""
+    pair = [circle(str(k), x, turn + (np.pi if x else 0)) for k in range(3) for x in (0.0, 25.0)]
+    with pytest.raises(PointsError, match=r"section '0' cross at 12\.50, -?15\.\d\d, 0\.00"):
+        from_outlines(pair)
+    apart = [circle(str(k), x, turn) for k in range(3) for x in (0.0, 40.01)]
+    assert all(len(plane.parts) == 2 for plane in section_planes(apart))
+
+
+@pytest.mark.parametrize(("corner", "place"), [(0.0, "10.00, 10.00"), (5.0, "11.43, 11.43")])
+def test_an_outline_that_crosses_itself_is_refused_with_its_place(corner: float, place: str) -> None:
+    """A figure of eight was said to lie on one line where its halves are equal, and accepted where they are not."""
+    eight = np.array([[0, 0, 7], [20, 20, 7], [20, corner, 7], [0, 20, 7]], float)
+    with pytest.raises(PointsError, match=f"section 'a' crosses itself at {place}, 7.00"):
+        from_outlines([Outline("a", eight), Outline("b", eight + np.array([0.0, 0.0, 9.0]))])
+    # A slip of the pen is not one.
+    kink = np.array([[0, 0, 7], [20, 0, 7], [20, 20, 7], [10, 20.01, 7], [10.01, 20.01, 7], [10, 20, 7], [0, 20, 7]])
+    assert len(section_planes([Outline("a", kink)])[0].parts) == 1
+
+
 @pytest.mark.parametrize("corners", [16, 24, 48])
 def test_contacts_of_a_drawn_ellipse_lie_on_it_and_not_on_its_chords(corners: int) -> None:
     """An outline's chords cut an ellipse of 24 corners short by up to 0.9 %, and its volume with it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from bodies.shapes import KINDS, horn
 from geofit.bodies.body import BodyFit
 from geofit.bodies.dual import dual_quads
 from geofit.bodies.fit import fit_body
+from geofit.bodies.implicit_body import OwnField
 from geofit.bodies.quads import PatchedSurface, patched_surface
 from geofit.bodies.settings import BodySettings
 from geofit.cad.faces import explore
@@ -57,6 +59,29 @@ def test_triangles_keep_the_volume(two: BodyFit, tmp_path: Path) -> None:
     gaps = np.linalg.norm(mesh.find_closest_cell(places, return_closest_point=True)[1] - places, axis=1)
     assert sigma.value == pytest.approx(np.sqrt((gaps**2).sum() / (len(gaps) - 1)), rel=1e-6)
     assert found.max_abs == pytest.approx(gaps.max(), rel=1e-6)
+
+
+@dataclass(frozen=True)
+class LargeCells(OwnField):
+    """A thin ring whose overview has cells as large as the ring is thick."""
+
+    field: implicit.Torus
+    name: str = "thin ring"
+    spacing: float = 1.0
+    overview_spacing: float = 4.0
+
+    @property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """A box somewhat larger than the ring."""
+        return np.array([-60.0, -60.0, -6.0]), np.array([60.0, 60.0, 6.0])
+
+
+def test_triangles_that_lose_a_part_of_the_volume_fail(tmp_path: Path) -> None:
+    body = LargeCells(implicit.Torus((0, 0, 0), (0, 0, 1), 50.0, 4.0))
+    found = body.write_step(tmp_path / "ring.step", nurbs=False)
+    assert found.volume == pytest.approx(body.overview.volume, rel=1e-9)
+    assert found.volume < 0.97 * body.size.volume
+    assert [check.name for check in found.checks if check.passed is False] == ["volume"]
 
 
 def test_the_contacts_of_a_cut_body_are_not_compared_and_no_check_says_nan(tmp_path: Path) -> None:

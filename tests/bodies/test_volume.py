@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from bodies.planted import drilled, torus
+from bodies.planted import ORIGIN, SIZE, drilled, plate, torus
 from geofit.bodies.fit import fit_body
 from geofit.bodies.implicit_body import OwnField
 from geofit.bodies.simulate import volumes_of
@@ -68,6 +68,19 @@ def test_the_volume_of_a_fitted_body_does_not_depend_on_the_cells() -> None:
     assert volumes.best == body.size.volume
     assert volumes.error == body.size.volume_error < 1e-3 * volumes.best
     assert volumes.p50 == pytest.approx(volumes.best, rel=1e-9)
+
+
+@pytest.mark.parametrize(("dip", "thickness"), [(45, 4.0), (20, 1.0), (45, 2.0)])
+def test_a_plate_thinner_than_the_raster_has_its_whole_extent_volume_and_overview(dip: float, thickness: float) -> None:
+    """A plate of 4 m had a part of its volume, one of 2 m none at all, and its triangles half of what was stated."""
+    body = fit_body(drilled(plate(dip, thickness / SIZE), 1, rows=9, step=0.005, named=True))
+    lower, upper = (corner + body.origin for corner in body.extent)
+    assert ((body.contacts > lower) & (body.contacts < upper)).all()
+    place = np.random.default_rng(0).uniform(-0.8, 0.8, (200_000, 3)) * SIZE + ORIGIN
+    volume = float((body.value(place) < 0).mean()) * (1.6 * SIZE) ** 3
+    assert abs(body.size.volume - volume) < body.size.volume_error + 0.05 * volume
+    assert body.overview.is_closed
+    assert body.overview.volume == pytest.approx(body.size.volume, rel=0.02)
 
 
 def test_volumes_of_a_body_that_was_not_simulated() -> None:
