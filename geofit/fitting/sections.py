@@ -70,24 +70,27 @@ def crossing_lines(plan: Floats, lines: NDArray[np.str_]) -> NDArray[np.str_]:
     labels : (n,) array of str
         Names of the other lines, empty for points on none.
     """
-    none = np.full(len(plan), "", dtype="<U12")
+    labels = np.full(len(plan), "", dtype="<U12")
     on_line = np.flatnonzero(lines != "")
-    if len(on_line) <= AROUND:
-        return none
-    mine, at = lines[on_line], plan[on_line]
+    # Points at one place have no direction.
+    at, first, back = np.unique(plan[on_line], axis=0, return_index=True, return_inverse=True)
+    if len(at) <= AROUND:
+        return labels
+    mine = lines[on_line][first]
     found_at = KDTree(at).query(at, k=AROUND)
     distance, index = np.asarray(found_at[0]), np.asarray(found_at[1])
     step = at[index] - at[:, None]
     turned = np.exp(2j * np.arctan2(step[..., 1], step[..., 0]))
     other = mine[index] != mine[:, None]
-    # The first neighbour of a point is the point itself.
-    direction = turned[:, 1:][~other[:, 1:]].mean()
-    nearest = other.argmax(axis=1)
+    # The first neighbour of a place is the place itself.
+    along = turned[:, 1:][~other[:, 1:]]
+    if not len(along):
+        return labels
     row = np.flatnonzero(other.any(axis=1))
-    off = np.degrees(np.abs(np.angle(turned[row, nearest[row]] / direction))) / 2
-    crossing = off > CROSSING
-    labels = none.copy()
-    labels[on_line] = _lines(at, step[row, nearest[row]][crossing], float(np.median(distance[:, 1])))
+    nearest = other[row].argmax(axis=1)
+    off = np.degrees(np.abs(np.angle(turned[row, nearest] / along.mean()))) / 2
+    crossing = _lines(at, step[row, nearest][off > CROSSING], float(np.median(distance[:, 1])))
+    labels[on_line] = crossing[back.reshape(-1)]
     return labels
 
 

@@ -54,6 +54,12 @@ def test_points_on_a_grid_lie_on_lines_of_two_directions(nx, ny, turn):
     assert len(set(zip(lines.tolist(), crossing.tolist(), strict=True))) == nx * ny
 
 
+def test_points_at_one_place_do_not_turn_the_lines():
+    plan = np.repeat(grid(7, 9), 8, axis=0)
+    lines = np.array([f"line {x:.0f}" for x in plan[:, 0]])
+    assert len(np.unique(crossing_lines(plan, lines))) == 9
+
+
 def test_lines_without_common_places_are_not_crossed():
     rng = np.random.default_rng(4)
     along = [np.column_stack([np.full(30, 60.0 * k), rng.uniform(0, 600, 30)]) for k in range(8)]
