@@ -241,7 +241,7 @@ class Fitting(QObject):
     def _drop(self, name: str) -> None:
         text = message(
             "gui.horizon-gone-meanwhile",
-            "'{name}' is no longer among the horizons: what was under way for it was discarded.",
+            "The site has no horizon '{name}' any more; the result of its task was discarded.",
             name=Untranslated(name),
         )
         _LOG.warning(text)

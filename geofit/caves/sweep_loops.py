@@ -91,10 +91,10 @@ def paint_sweeps(
     first = np.maximum(np.floor((boxes[0] - origin) / spacing).astype(np.int64) - 2, 0)
     last = np.minimum(np.ceil((boxes[1] - origin) / spacing).astype(np.int64) + 2, np.array(shape) - 1)
     # Beyond this distance from the axis a node is outside, has no neighbour inside, and does not blend.
-    round_it = extremes(sweeps)[0] + blend + 2 * spacing
-    # Nor does one so far beyond its walls, and no neighbour is near them: slots are much narrower than they are high.
-    beside = half_axes(sweeps)[:, :2] + margin(sweeps, blend, spacing)
-    far = np.column_stack([beside, round_it])
+    from_axis = extremes(sweeps)[0] + blend + 2 * spacing
+    # The same holds beyond this distance from the walls: slots are much narrower than they are high.
+    from_walls = half_axes(sweeps)[:, :2] + margin(sweeps, blend, spacing)
+    far = np.column_stack([from_walls, from_axis])
     _loops()[3](first, last, origin, spacing, *_arrays(sweeps), sweeps.branch, far, best, second, owner)
     if blend > 0:
         near = second < best + blend

@@ -72,7 +72,7 @@ def crossing_lines(plan: Floats, lines: NDArray[np.str_]) -> NDArray[np.str_]:
     """
     labels = np.full(len(plan), "", dtype="<U12")
     on_line = np.flatnonzero(lines != "")
-    # Points at one place have no direction.
+    # Coincident points have no direction.
     at, first, back = np.unique(plan[on_line], axis=0, return_index=True, return_inverse=True)
     if len(at) <= AROUND:
         return labels

@@ -98,19 +98,19 @@ class VerdictBadge(QFrame):
         judged = verdict_of(accuracy) if verdict is None and accuracy is not None else verdict
         self._level = "none" if judged is None else judged.level
         self.mark.name = level_mark(self._level)
-        none = self.tr("Reading the surface…") if waiting else self.tr("No surface yet")
-        if stopped:
-            none = self.tr("Surface not made again")
-        self._word.setText(none if judged is None else verdict_word(judged))
+        if waiting:
+            word = self.tr("Reading the surface…")
+            advice = self.tr("It is part of the project, and its verdict follows in a moment.")
+        elif stopped:
+            word = self.tr("Surface not made again")
+            advice = self.tr("That was stopped. Press Fit to make it as it was, with its manual edits.")
+        else:
+            word = self.tr("No surface yet")
+            advice = self.tr("Press Fit to fit one and check it against ε.")
+        self._word.setText(word if judged is None else verdict_word(judged))
         self._show_lamps(() if judged is None else judged.lamps)
         if accuracy is None:
-            self._more.setText(
-                self.tr("It is part of the project, and its verdict follows in a moment.")
-                if waiting
-                else self.tr("That was stopped. Press Fit to make it as it was, with its manual edits.")
-                if stopped
-                else self.tr("Press Fit to fit one and check it against ε.")
-            )
+            self._more.setText(advice)
             self.setToolTip("")
         else:
             beyond = " · ".join(

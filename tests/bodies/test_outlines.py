@@ -155,7 +155,7 @@ def circle(section: str, x: float, turn: float) -> Outline:
 
 @pytest.mark.parametrize("turn", [0.0, np.pi])
 def test_outlines_of_a_section_that_cross_are_refused_with_their_place(turn: float) -> None:
-    """Where both began within the other, both were holes: a traceback; otherwise a hole that nobody drew."""
+    """Two outlines that start inside each other both counted as holes; otherwise their overlap became a hole."""
     pair = [circle(str(k), x, turn + (np.pi if x else 0)) for k in range(3) for x in (0.0, 25.0)]
     with pytest.raises(PointsError, match=r"section '0' cross at 12\.50, -?15\.\d\d, 0\.00"):
         from_outlines(pair)

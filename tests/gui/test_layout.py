@@ -86,21 +86,23 @@ def test_a_layout_that_cannot_be_read_gives_the_first_one(app):
     assert in_front(app.window) == {"tree", "fit"}
 
 
-def test_names_of_horizons_have_room_at_the_left(app):
-    app.window.resize(1360, 800)
+def arranged_anew(app, width):
+    """Open the sample in a window of a width, its panels where they are at first."""
+    app.window.resize(width, 800)
     opened(app)
     app.trigger("reset_layout")
     app.idle()
+
+
+def test_names_of_horizons_have_room_at_the_left(app):
+    arranged_anew(app, 1360)
     tree = app.window.panels.tree
     assert tree.width() >= 240
     assert tree.view.textElideMode() == Qt.TextElideMode.ElideMiddle
 
 
 def test_the_view_has_most_of_a_small_window(app):
-    app.window.resize(1280, 800)
-    opened(app)
-    app.trigger("reset_layout")
-    app.idle()
+    arranged_anew(app, 1280)
     view = app.window.panels.view
     assert view.width() * view.height() >= 0.55 * 1280 * 800
     assert app.window.panels.layout.folded

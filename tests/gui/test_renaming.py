@@ -164,7 +164,7 @@ def test_a_queue_goes_on_without_the_horizons_that_are_gone(three):
     fitting.push(RemoveHorizons(("A", "B")))
     three.idle()
     assert set(document.surfaces()) == {"C"}
-    assert [text.split(" is")[0] for text in said] == ["'A'", "'B'"]
+    assert [text.split("'")[1] for text in said] == ["A", "B"]
     assert not three.window.actions_["stop"].isEnabled()
 
 

@@ -54,7 +54,7 @@ def test_points_on_a_grid_lie_on_lines_of_two_directions(nx, ny, turn):
     assert len(set(zip(lines.tolist(), crossing.tolist(), strict=True))) == nx * ny
 
 
-def test_points_at_one_place_do_not_turn_the_lines():
+def test_coincident_points_do_not_hide_crossing_lines():
     plan = np.repeat(grid(7, 9), 8, axis=0)
     lines = np.array([f"line {x:.0f}" for x in plan[:, 0]])
     assert len(np.unique(crossing_lines(plan, lines))) == 9
