@@ -20,6 +20,8 @@ Floats = NDArray[np.float64]
 TOLERANCE = 1e-8
 #: A place within this share of ``size`` of the surface is near it, by the first order of the field.
 NEAR = 0.1
+#: A place within this share of ``size`` of a foot point lies on the surface.
+ON = 1e-7
 
 
 def body_distance(field: Field, xyz: Floats, size: float, surface: Callable[[], TriangleMesh]) -> Floats:
@@ -28,7 +30,8 @@ def body_distance(field: Field, xyz: Floats, size: float, surface: Callable[[], 
     The iteration for the foot point starts at the place itself where that is near the surface, else at the nearest
     vertex of a mesh of the surface. Where it does not converge, or ends farther away than it started, it starts again
     at the nearest place of the mesh's triangles, moved onto the surface; if that fails too, the distance is that of
-    this place.
+    this place. The first end remains where it is nearer: a mesh lacks parts of the body that are smaller than its
+    cells, and rounding of the field alone keeps an iteration from converging.
 
     Parameters
     ----------
@@ -54,12 +57,18 @@ def body_distance(field: Field, xyz: Floats, size: float, surface: Callable[[], 
             return sign * np.inf
         vertices = wall.vertices[np.unique(wall.triangles)]
         start[far] = vertices[cKDTree(vertices).query(xyz[far])[1]]
-    distance, failed = _walked(field, xyz, start, size)
-    again = np.flatnonzero(failed)
-    if len(again) and len((wall := surface()).triangles):
-        start = project_along_gradient(field, _nearest(wall, xyz[again], size), reach=NEAR * size)
-        walked, failed = _walked(field, xyz[again], start, size)
-        distance[again] = np.where(failed, np.linalg.norm(xyz[again] - start, axis=1), walked)
+    distance, end = _walked(field, xyz, start, size)
+    again = np.flatnonzero(np.isnan(distance))
+    if len(again):
+        places, first = xyz[again], end[again]
+        found = np.linalg.norm(places - first, axis=1) + _offset(field, first)
+        if len((wall := surface()).triangles):
+            start = project_along_gradient(field, _nearest(wall, places, size), reach=NEAR * size)
+            walked, _ = _walked(field, places, start, size)
+            missed = np.isnan(walked)
+            walked[missed] = np.linalg.norm(places - start, axis=1)[missed]
+            found = np.fmin(found, walked)
+        distance[again] = found
     return np.asarray(sign * distance)
 
 
@@ -69,7 +78,13 @@ def wall_of(field: Field, mesh: TriangleMesh, size: float) -> TriangleMesh:
 
 
 def _near(field: Field, xyz: Floats, size: float) -> NDArray[np.bool_]:
-    return np.asarray(np.abs(field.value(xyz)) <= NEAR * size * np.linalg.norm(field.gradient(xyz), axis=1))
+    return np.asarray(_offset(field, xyz) <= NEAR * size)
+
+
+def _offset(field: Field, xyz: Floats) -> Floats:
+    """Return how far (n,) places are from the surface, by the first order of the field."""
+    value, slope = np.abs(field.value(xyz)), np.linalg.norm(field.gradient(xyz), axis=1)
+    return np.divide(value, slope, out=np.where(value > 0, np.inf, 0.0), where=slope > 0)
 
 
 def _nearest(wall: TriangleMesh, xyz: Floats, size: float) -> Floats:
@@ -81,8 +96,8 @@ def _nearest(wall: TriangleMesh, xyz: Floats, size: float) -> Floats:
     return np.asarray(nearest_on_mesh(mesh, xyz / size).foot * size)
 
 
-def _walked(field: Field, xyz: Floats, start: Floats, size: float) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return the distances (n,) of places from the foot points found from a start, and where that failed.
+def _walked(field: Field, xyz: Floats, start: Floats, size: float) -> tuple[Floats, Floats]:
+    """Return the distances (n,) of places from the foot points found from a start, NaN where none was, and its ends.
 
     The start is near the surface, so the nearest place of the surface is hardly farther away than the start.
     """
@@ -90,4 +105,8 @@ def _walked(field: Field, xyz: Floats, start: Floats, size: float) -> tuple[Floa
     distance = np.abs(found.distance)
     most = np.linalg.norm(xyz - start, axis=1) + 2 * NEAR * size
     # Where a field is constant, the iteration converges off the surface.
-    return distance, ~found.converged | (distance > most) | ~_near(field, found.xyz, size)
+    off = _offset(field, found.xyz)
+    good = found.converged & (distance <= most) & (off <= NEAR * size)
+    # On a contact, rounding of the field keeps the iteration from converging; no other start ends nearer.
+    good |= distance + off <= ON * size
+    return np.where(good, distance, np.nan), found.xyz
