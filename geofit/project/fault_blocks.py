@@ -141,7 +141,7 @@ def cuts_measured(blocks: Blocks, *, progress: Progress | None) -> tuple[FaultCu
         surfaces = fault_surfaces(first.faults, blocks.given, progress)
         cutting = [k for k, side in enumerate(first.sides) if side >= 0]
         faults = [Fault.of(surfaces[first.faults[k]], k, area) for k in cutting]
-        by_sides = {tuple(part.sides[k] for k in cutting): surface for part, surface in mine}
+        by_sides = [(tuple(part.sides[k] for k in cutting), surface) for part, surface in mine]
         cuts += throws(by_sides, faults, horizon, area)
     return cuts
 

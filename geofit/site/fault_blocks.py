@@ -39,6 +39,8 @@ Floats = NDArray[np.float64]
 
 #: Points that a block needs to bend by itself; below three there is no surface at all.
 FEW, FEWEST = 6, 3
+#: A piece of a block that is a smaller share of the study area needs no surface of its own.
+SLIVER = 0.005
 #: How far a block's surface is laid beyond its fault, as a share of the area's longer side, before it is cut there.
 BEYOND = 0.1
 
@@ -159,14 +161,14 @@ def fit_blocks(
     """
     area = area_of(points, boundary)
     members = part(points, faults, area, name)
-    blocks: dict[Sides, HorizonFit] = {}
+    blocks: list[tuple[Sides, HorizonFit]] = []
     for k, (title, sides) in enumerate(zip(members.names, members.sides, strict=True)):
         tell(progress, message("site.block-name", "block {name}", name=title), 0.5 + 0.5 * k / len(members.names))
         mine = points[np.flatnonzero(members.block == k)]
         dips = (orientations, name)
-        blocks[sides] = fit_block(mine, members.faults, sides, settings, area, name=title, dips=dips)
+        blocks.append((sides, fit_block(mine, members.faults, sides, settings, area, name=title, dips=dips)))
     cuts = throws(blocks, members.faults, name, area)
-    return BlockFit(tuple(blocks.values()), members.block, cuts, members.notes)
+    return BlockFit(tuple(block for _, block in blocks), members.block, cuts, members.notes)
 
 
 def area_of(points: PointSet, boundary: ArrayLike | None) -> Polygon:
@@ -180,7 +182,7 @@ def area_of(points: PointSet, boundary: ArrayLike | None) -> Polygon:
 
 
 def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polygon, name: str) -> BlockMembers:
-    """Part the points of a horizon by the side of each fault they lie on.
+    """Part the points of a horizon by the side of each fault they lie on, and by the pieces that the area has there.
 
     Parameters and errors as :func:`fit_blocks`; ``area`` is the study area.
     """
@@ -201,12 +203,18 @@ def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polyg
         else:
             cutting.append(fault)
             sides.append(side[:, None])
-    signs, block, count = np.unique(np.hstack(sides), axis=0, return_inverse=True, return_counts=True)
-    order = np.argsort(-count, kind="stable")
-    block = np.argsort(order)[block.ravel()]
-    names = [f"{name} ({chr(ord('A') + k)})" if len(signs) > 1 else name for k in range(len(signs))]
-    for k, title in enumerate(names):
-        mine = np.flatnonzero(block == k)
+    signs, which = np.unique(np.hstack(sides), axis=0, return_inverse=True)
+    groups: list[tuple[Sides, NDArray[np.int64]]] = []
+    for k, row in enumerate(map(tuple, signs.tolist())):
+        mine = np.flatnonzero(which.ravel() == k)
+        found, lacking = _by_piece(points.xyz, mine, cutting, row, area, name)
+        groups += [(row, one) for one in found]
+        notes += lacking
+    groups.sort(key=lambda group: -len(group[1]))
+    block = np.empty(len(points), np.int64)
+    names = [f"{name} ({chr(ord('A') + k)})" if len(groups) > 1 else name for k in range(len(groups))]
+    for k, (title, (_, mine)) in enumerate(zip(names, groups, strict=True)):
+        block[mine] = k
         if len(mine) < FEWEST:
             text = message(
                 "site.block-too-few-points",
@@ -229,8 +237,41 @@ def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polyg
                     count=len(mine),
                 ).with_severity("warning")
             )
-    rows = tuple(tuple(row) for row in signs[order].tolist())
-    return BlockMembers(tuple(cutting), tuple(names), rows, block, tuple(notes))
+    return BlockMembers(tuple(cutting), tuple(names), tuple(row for row, _ in groups), block, tuple(notes))
+
+
+def _by_piece(
+    xyz: Floats, mine: NDArray[np.int64], faults: Sequence[Fault], sides: Sides, area: Polygon, name: str
+) -> tuple[list[NDArray[np.int64]], list[Message]]:
+    """Part the points of one block by the pieces of its area, as in the arms of a concave one.
+
+    A piece with too few points for a surface has none, and a note; its points stay with the nearest one.
+    """
+    import shapely
+
+    whole = [piece for piece in _pieces(area, _plane(xyz[mine]), faults, sides) if piece.area > SLIVER * area.area]
+    if len(whole) < 2:
+        return [mine], []
+    away = shapely.distance(shapely.points(xyz[mine, :2])[:, None], np.array(whole, dtype=object))
+    count = np.bincount(away.argmin(axis=1), minlength=len(whole))
+    notes = [
+        message(
+            "site.piece-without-surface",
+            "{area:.0f} m2 of the study area of {horizon} lie apart from the rest of their block and have no surface: "
+            "points there: {count}, needed: {least}",
+            area=piece.area,
+            horizon=name,
+            count=int(n),
+            least=FEWEST,
+        ).with_severity("warning")
+        for piece, n in zip(whole, count, strict=True)
+        if n < FEWEST
+    ]
+    kept = np.flatnonzero(count >= FEWEST)
+    if not len(kept):
+        return [mine], notes
+    nearest = away[:, kept].argmin(axis=1)
+    return [mine[nearest == k] for k in range(len(kept))], notes
 
 
 def fit_block(
@@ -270,41 +311,37 @@ def fit_block(
     """
     import shapely
 
-    centre = points.xyz.mean(axis=0)
-    slope = np.linalg.lstsq((points.xyz - centre)[:, :2], points.xyz[:, 2] - centre[2], rcond=None)[0]
-
-    def plane(x: Floats, y: Floats) -> Floats:
-        return np.asarray(centre[2] + slope[0] * (x - centre[0]) + slope[1] * (y - centre[1]))
-
-    guess = _cut(area, plane, faults, sides, name)
-    widened = _largest(
-        shapely.intersection(shapely.buffer(guess, BEYOND * longer_side(area), join_style="mitre"), area)
+    plan = points.xyz[:, :2]
+    guess = _cut(area, _plane(points.xyz), faults, sides, name, plan)
+    widened = _home(
+        shapely.intersection(shapely.buffer(guess, BEYOND * longer_side(area), join_style="mitre"), area), plan
     )
     corners = shapely.get_coordinates(widened.exterior)[:-1]
     measured = dips_within(*dips, guess, name)
     surface = fit_horizon(points, settings, corners, progress, name=name, orientations=measured)
     height_field = HeightField(surface)
-    held = _largest(shapely.intersection(area, height_field.area()))
-    outline = _cut(held, height_field, faults, sides, name)
+    held = _home(shapely.intersection(area, height_field.area()), plan)
+    outline = _cut(held, height_field, faults, sides, name, plan)
     return surface.ended_at(shapely.get_coordinates(outline.exterior)[:-1])
 
 
-def _cut(area: Polygon, height: Height, faults: Sequence[Fault], sides: Sides, title: str) -> Polygon:
-    """Return the part of an area where a surface lies on the given side of every fault."""
-    import shapely
-    from shapely.ops import split
+def _plane(xyz: Floats) -> Height:
+    """Return the height of the least-squares plane through points (n, 3)."""
+    centre = xyz.mean(axis=0)
+    slope = np.linalg.lstsq((xyz - centre)[:, :2], xyz[:, 2] - centre[2], rcond=None)[0]
 
+    def height(x: Floats, y: Floats) -> Floats:
+        return np.asarray(centre[2] + slope[0] * (x - centre[0]) + slope[1] * (y - centre[1]))
+
+    return height
+
+
+def _cut(area: Polygon, height: Height, faults: Sequence[Fault], sides: Sides, title: str, plan: Floats) -> Polygon:
+    """Return the part of an area, with most of the points (n, 2), where a surface lies on one side of every fault."""
     rest = area
     for fault, sign in zip(faults, sides, strict=True):
-        pieces = [rest]
-        for line in fault.traces(area, height):
-            whole = longer(line, BEYOND_TRACE * longer_side(area))
-            cut = (one for piece in pieces for one in split(piece, shapely.LineString(whole)).geoms)
-            pieces = [one for one in cut if isinstance(one, shapely.Polygon)]
-        inner = shapely.get_coordinates([shapely.point_on_surface(piece) for piece in pieces])
-        side = fault.side(np.column_stack([inner, height(*inner.T)]))
-        mine = [piece for piece, one in zip(pieces, side, strict=True) if one == sign]
-        if not mine:
+        pieces = _pieces(rest, height, [fault], (sign,), area)
+        if not pieces:
             text = message(
                 "site.block-outside-surface",
                 "The block '{block}' has points on a side of {fault} where its surface has no area. "
@@ -313,12 +350,42 @@ def _cut(area: Polygon, height: Height, faults: Sequence[Fault], sides: Sides, t
                 fault=fault.name,
             )
             raise FitError(text)
-        rest = max(mine, key=shapely.area)
+        rest = _most(pieces, plan)
     return rest
 
 
-def _largest(shape: BaseGeometry) -> Polygon:
-    """Return the largest polygon of what an intersection left."""
+def _pieces(
+    shape: Polygon, height: Height, faults: Sequence[Fault], sides: Sides, area: Polygon | None = None
+) -> list[Polygon]:
+    """Return all polygons of a shape in which a surface lies on the given side of every fault.
+
+    Traces are those within ``area``, by default the shape.
+    """
+    import shapely
+    from shapely.ops import split
+
+    area, pieces = shape if area is None else area, [shape]
+    for fault, sign in zip(faults, sides, strict=True):
+        for line in fault.traces(area, height):
+            whole = longer(line, BEYOND_TRACE * longer_side(area))
+            cut = (one for piece in pieces for one in split(piece, shapely.LineString(whole)).geoms)
+            pieces = [one for one in cut if isinstance(one, shapely.Polygon)]
+        if not pieces:
+            break
+        inner = shapely.get_coordinates([shapely.point_on_surface(piece) for piece in pieces])
+        side = fault.side(np.column_stack([inner, height(*inner.T)]))
+        pieces = [piece for piece, one in zip(pieces, side, strict=True) if one == sign]
+    return pieces
+
+
+def _home(shape: BaseGeometry, plan: Floats) -> Polygon:
+    """Return the polygon, of those that an intersection left, with most of the points (n, 2)."""
     import shapely
 
-    return max((one for one in shapely.get_parts(shape) if isinstance(one, shapely.Polygon)), key=shapely.area)
+    return _most([one for one in shapely.get_parts(shape) if isinstance(one, shapely.Polygon)], plan)
+
+
+def _most(pieces: Sequence[Polygon], plan: Floats) -> Polygon:
+    import shapely
+
+    return max(pieces, key=lambda piece: (int(shapely.intersects_xy(piece, *plan.T).sum()), piece.area))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING
@@ -68,14 +68,14 @@ class FaultCut:
 
 
 def throws(
-    blocks: Mapping[Sides, HorizonFit], faults: Sequence[Fault], horizon: str, area: Polygon
+    blocks: Sequence[tuple[Sides, HorizonFit]], faults: Sequence[Fault], horizon: str, area: Polygon
 ) -> tuple[FaultCut, ...]:
     """Return what each fault displaces between every two blocks that it alone parts.
 
     Parameters
     ----------
-    blocks : mapping of tuple of int to HorizonFit
-        Surfaces of one horizon by their side of each of ``faults``; they reach somewhat beyond their outlines.
+    blocks : sequence of tuple of int and HorizonFit
+        Surfaces of one horizon with their side of each of ``faults``; they reach somewhat beyond their outlines.
     faults : sequence of Fault
         All that cut the horizon.
     horizon : str
@@ -83,7 +83,7 @@ def throws(
     area : shapely.Polygon
         The study area, map coordinates.
     """
-    known = [_Block(sides, surface.name, HeightField(surface)) for sides, surface in blocks.items()]
+    known = [_Block(sides, surface.name, HeightField(surface)) for sides, surface in blocks]
     found = []
     for one, two in combinations(known, 2):
         differing = [k for k in range(len(faults)) if one.sides[k] != two.sides[k]]
@@ -120,20 +120,21 @@ def _displacement(
         )
         if part.geom_type == "LineString"
     ]
-    if not lines:
+    met: tuple[Floats, Floats] | None = None
+    for line in lines:
+        distance = np.linspace(0, line.length, PLACES)
+        plan = shapely.get_coordinates(shapely.line_interpolate_point(line, distance))
+        trace = np.column_stack([plan, middle(*plan.T)])
+        # Where a further fault parts the two blocks from this place, they do not meet here.
+        meets = np.isfinite(trace[:, 2])
+        for k, other in enumerate(faults):
+            if k != number:
+                meets[meets] &= other.side(trace[meets]) == one.sides[k]
+        if meets.sum() > 1 and (met is None or np.ptp(distance[meets]) > met[1][-1]):
+            met = trace[meets], distance[meets] - distance[meets][0]
+    if met is None:
         return None
-    line = max(lines, key=shapely.length)
-    distance = np.linspace(0, line.length, PLACES)
-    plan = shapely.get_coordinates(shapely.line_interpolate_point(line, distance))
-    trace = np.column_stack([plan, middle(*plan.T)])
-    # Where a further fault parts the two blocks from this place, they do not meet here.
-    meets = np.isfinite(trace[:, 2])
-    for k, other in enumerate(faults):
-        if k != number:
-            meets[meets] &= other.side(trace[meets]) == one.sides[k]
-    if meets.sum() < 2:
-        return None
-    trace, distance = trace[meets], distance[meets] - distance[meets][0]
+    trace, distance = met
     throw = one.height_field(*trace[:, :2].T) - two.height_field(*trace[:, :2].T)
     heave = _heave(fault, number, one, two, trace[:, :2], ACROSS * longer_side(area))
     upper, lower = (one, two) if throw.mean() >= 0 else (two, one)

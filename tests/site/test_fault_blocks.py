@@ -20,7 +20,7 @@ from faulted import (
     truth,
 )  # fmt: skip
 from refusals import refused, with_code
-from shapely import Polygon
+from shapely import Polygon, contains_xy
 from truth import EASTING, NORTHING, rms
 
 from geofit import FitSettings, PointSet, fit_horizon
@@ -175,3 +175,39 @@ def test_a_site_states_which_fault_cuts_which_horizon():
         fit_faulted(site, "F1")
     with refused(InputError, "data.horizon-unknown", name="X"):
         fit_faulted(replace(site, faults={}), "X")
+
+
+ARMS = np.array([[0, 0], [1000, 0], [1000, 400], [400, 400], [400, 600], [1000, 600], [1000, 1000], [0, 1000.0]])
+
+
+def armed_points(keep=lambda x, y: np.full(len(x), True)):
+    """A horizon over an area of two arms, thrown by 20 m along a trace that cuts both."""
+    x, y = np.random.default_rng(11).uniform(0, 1000, (2, 240))
+    z = 20 * np.sin(x / 200) + 10 * np.cos(y / 150) - np.where(x > 450 + 0.1 * y, 20, 0)
+    mine = contains_xy(Polygon(ARMS), x, y) & keep(x, y)
+    return PointSet(np.column_stack([x, y, z])[mine])
+
+
+def test_each_arm_of_a_concave_area_has_a_surface_and_its_throw():
+    blocks = fit_blocks(armed_points(), [np.array([[450.0, 0], [550, 1000]])], None, ARMS, name="T2")
+    outlines = [Polygon(block.outline) for block in blocks.blocks]
+    assert [block.name for block in blocks.blocks] == ["T2 (A)", "T2 (B)", "T2 (C)"]
+    assert sum(one.area for one in outlines) == pytest.approx(Polygon(ARMS).area, rel=1e-3)
+    for number, (outline, block) in enumerate(zip(outlines, blocks.blocks, strict=True)):
+        assert contains_xy(outline.buffer(0.1), *block.points.xyz[:, :2].T).all()
+        assert len(block.points) == np.count_nonzero(blocks.block == number)
+    assert [(cut.up, cut.down) for cut in blocks.cuts] == [("T2 (A)", "T2 (B)"), ("T2 (A)", "T2 (C)")]
+    for cut in blocks.cuts:
+        assert cut.throw == pytest.approx(20, abs=0.2)
+        assert cut.distance[-1] == pytest.approx(402, rel=0.03)
+    assert not blocks.notes
+
+
+def test_an_arm_with_too_few_points_is_named():
+    points = armed_points(lambda x, y: (x < 450 + 0.1 * y) | (y < 500))
+    blocks = fit_blocks(points, [np.array([[450.0, 0], [550, 1000]])], None, ARMS, name="T2")
+    assert len(blocks.blocks) == 2
+    note = with_code(blocks.notes, "site.piece-without-surface")
+    assert note.severity == "warning"
+    assert (note.params["count"], note.params["least"]) == (0, 3)
+    assert note.params["area"] == pytest.approx(188_000, rel=1e-3)
