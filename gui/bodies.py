@@ -105,7 +105,7 @@ class Bodies(QObject):
         """Fit a body, or read it from its file; without a name it is called after its codes or its file."""
         if not name:
             name = " + ".join(source.codes) if isinstance(source, Intervals) else Path(getattr(source, "file", "")).stem
-            name = _free(name, self._document.state.bodies)
+            name = self.free_name(name)
         self.showing.chosen = name
         state = self._document.state
         existed, edits = name in state.bodies, state.horizons
@@ -116,6 +116,13 @@ class Bodies(QObject):
             on_done=lambda done: self._fitted(name, existed, *done),
             in_process=True,
         )
+
+    def free_name(self, name: str) -> str:
+        """Return the name, with a number behind it where a body has it already."""
+        free, turn = name or "body", 2
+        while free in self._document.state.bodies:
+            free, turn = f"{name} {turn}", turn + 1
+        return free
 
     def ask_export(self, name: str) -> None:
         """Ask for a file; its ending is the format."""
@@ -396,11 +403,3 @@ class Bodies(QObject):
         self.watch.forget()
         self._pending.clear()
         self._given_up.clear()
-
-
-def _free(name: str, taken: object) -> str:
-    """Return the name, with a number behind it where a body has it already."""
-    free, turn = name or "body", 2
-    while free in taken:  # type: ignore[operator]
-        free, turn = f"{name} {turn}", turn + 1
-    return free

@@ -8,7 +8,7 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from geofit.bodies.violations import Violation
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 from geofit.gui.panels.bodies import BodyShown
 from geofit.gui.panels.marks import level_mark
 from geofit.gui.panels.project_tree import TreeBody
@@ -26,6 +26,9 @@ from geofit.project.staleness import stale_body_causes
 from geofit.report.digits import volume
 
 __all__ = ["BodyShowing"]
+
+#: A body farther away than this many times the extent of the site's data is not drawn with them.
+FAR = 100.0
 
 
 class BodyShowing(QObject):
@@ -130,7 +133,30 @@ class BodyShowing(QObject):
         waiting = result is None or (result.origin == "read back" and isinstance(record.provenance.source, FITTED))
         old = self._old(name)
         origin = "" if result is None or result.origin == "fitted" else translated(origin_text(result))
-        return BodyShown(record.provenance, accuracy, verdict, waiting=waiting and not old, old=old, origin=origin)
+        waiting = waiting and not old
+        warnings = () if result is None else (*result.warnings, *self._far(result))
+        return BodyShown(
+            record.provenance, accuracy, verdict, waiting=waiting, old=old, origin=origin, warnings=warnings
+        )
+
+    def _far(self, result: BodyResult) -> tuple[Message, ...]:
+        """Return a warning of a body too far from the site to be drawn with it, as one in other units is; else none."""
+        known, mesh = self._panels.view.contents.everything(), self.mesh(result).vertices
+        if not len(known) or not len(mesh):
+            return ()
+        low, high = known.min(axis=0), known.max(axis=0)
+        reach = float(np.linalg.norm(high - low))
+        away = float(np.linalg.norm(np.maximum(0, np.maximum(mesh.min(axis=0) - high, low - mesh.max(axis=0)))))
+        if away <= FAR * max(reach, 1.0):
+            return ()
+        text = message(
+            "gui.body-far-from-site",
+            "The body lies {away:.0f} m from the data of the site, which extend over {reach:.0f} m: it is not drawn. "
+            "Check the unit and the coordinate system of its file; coordinates are read as metres.",
+            away=away,
+            reach=reach,
+        )
+        return (text.with_severity("warning"),)
 
     def _old(self, name: str) -> str:
         """Return why a body is to be fitted again, with what has changed; empty: it is not."""
@@ -177,7 +203,7 @@ class BodyShowing(QObject):
             scene.remove(gone)
         for name, record in self._document.state.bodies.items():
             result, style = self._document.body(name), record.style
-            if result is None:
+            if result is None or self._far(result):
                 scene.remove(name)
                 continue
             data = None if result.fitted is None else result.fitted.data

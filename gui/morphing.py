@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
 
 from geofit.bodies.settings import BodySettings
-from geofit.data.errors import MissingDependencyError
+from geofit.data.errors import GeofitError, MissingDependencyError
 from geofit.data.files import file_stems
 from geofit.data.messages import gravest_first, message
 from geofit.gui.activity import Activity
@@ -19,7 +19,7 @@ from geofit.gui.dialogs.horizon_bodies import HorizonBodies
 from geofit.gui.filming import Filming
 from geofit.gui.fitting import Fitting
 from geofit.gui.lengths import in_lengths
-from geofit.gui.save_file import ask_save_file
+from geofit.gui.save_file import ask_save_file, may_replace
 from geofit.gui.translate import translated
 from geofit.gui.worker import Task, run
 from geofit.gui.workspace import Workspace
@@ -46,6 +46,8 @@ __all__ = ["Morphing"]
 _LOG = logging.getLogger(__name__)
 #: Frames that are exported, the kind of film, and pictures of a film of the view.
 FRAMES, FILM, PICTURES = 25, "gif", 49
+#: What an export writes: endings of its files and folders.
+WRITTEN = (".pvd", "", "_stl", "_obj", ".glb", ".csv", f".{FILM}", ".json")
 
 
 class Morphing(QObject):
@@ -155,6 +157,10 @@ class Morphing(QObject):
         view = self.view
         if view is None or view.full is None:
             return
+        if name in self._document.state.bodies:
+            text = message("gui.body-name-taken", "There is a body '{name}' already: choose another name.", name=name)
+            self.refused.emit(GeofitError(text))
+            return
         given = [end.given for end in view.way.ends]
         provenance, result = frame_as_body(view, self._panel.timeline.tau, name, given)
         self._document.put_body(provenance, result)
@@ -164,16 +170,18 @@ class Morphing(QObject):
 
     def ask_export(self) -> None:
         """Ask for a folder, and write frames, table and film there."""
-        start = str(self._document.folder or "")
-        folder = QFileDialog.getExistingDirectory(self._window, self.tr("Export frames"), start)
-        if folder:
-            self.export(Path(folder))
+        start, title, view = str(self._document.folder or ""), self.tr("Export frames"), self.view
+        folder = QFileDialog.getExistingDirectory(self._window, title, start)
+        if folder and view is not None:
+            stem = file_stems([name := _title(view)])[name]
+            if may_replace((Path(folder) / f"{stem}{end}" for end in WRITTEN), title, self._window):
+                self.export(Path(folder))
 
     def export(self, folder: Path, frames: int = FRAMES, film: str | None = FILM) -> None:
         """Write frames, table and film into a folder."""
         view = self.view
         if view is not None and view.full is not None:
-            work = (view.full, folder, " - ".join(view.way.names), frames, FRAME_FORMATS, film)
+            work = (view.full, folder, _title(view), frames, FRAME_FORMATS, film)
             self._activity.do(self.tr("Export frames"), export_frames, *work, on_done=self._exported, in_process=True)
 
     def ask_film(self) -> None:
@@ -229,8 +237,11 @@ class Morphing(QObject):
 
     def close_horizons(self, names: tuple[str, ...], base: str | float) -> None:
         """Make a body of the document between each of some horizons and a common base."""
+        bodies = self._document.state.bodies
         for name in names:
-            self._bodies.fit(name, BetweenHorizons(name, base), BodySettings())
+            again = name in bodies and isinstance(bodies[name].provenance.source, BetweenHorizons)
+            title = name if again else self._bodies.free_name(name)
+            self._bodies.fit(title, BetweenHorizons(name, base), BodySettings())
 
     def _previewed(self, view: MorphView, shapes: list[Any]) -> None:
         self.view = view
@@ -359,3 +370,8 @@ class Morphing(QObject):
     def _on_site(self) -> None:
         self._forget()
         self._panel.show_bodies(())
+
+
+def _title(view: MorphView) -> str:
+    """Return the name of what is exported of a way."""
+    return " - ".join(view.way.names)

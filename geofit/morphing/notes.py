@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from geofit.morphing.distance import Samples
     from geofit.morphing.sequence import Morph
 
-__all__ = ["notes"]
+__all__ = ["notes", "turned_note"]
 
 Floats = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ ROUNDING = 1e-5
 
 def notes(morph: Morph) -> tuple[Message, ...]:
     """Return the notes of a metamorphosis."""
-    found = [_turned(end.name) for end in morph.ends if end.turned]
+    found = [turned_note(end.name) for end in morph.ends if end.turned]
     bodies = [morph.legs[0].start, *(leg.end for leg in morph.legs)]
     for end, body in zip(morph.ends, bodies, strict=True):
         if (across := _thinnest(body)) < ACROSS * body.lattice.spacing:
@@ -55,7 +55,8 @@ def notes(morph: Morph) -> tuple[Message, ...]:
     return tuple(found)
 
 
-def _turned(name: str) -> Message:
+def turned_note(name: str) -> Message:
+    """Return the note of a mesh that was given inside out."""
     return message(
         "morphing.mesh-turned",
         "The normals of the mesh '{name}' point inwards: its triangles are reversed.",

@@ -86,6 +86,11 @@ class BodyResult:
         return getattr(self.body, "accuracy", None)
 
     @property
+    def warnings(self) -> tuple[Message, ...]:
+        """What limits the use of the body."""
+        return getattr(self.body, "notes", ()) if self.accuracy is None else self.accuracy.warnings
+
+    @property
     def verdict(self) -> Verdict | None:
         """The verdict of a fitted body with its three lamps; None of others."""
         return None if self.accuracy is None else verdict_of(self.accuracy, self.left_out)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from geofit.implicit.mesh import TriangleMesh
 
 if TYPE_CHECKING:
+    from geofit.data.messages import Message
     from geofit.morphing.between import BetweenSurfaces
 
 __all__ = ["MeshBody", "read_mesh_body"]
@@ -21,7 +22,10 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class MeshBody:
-    """Closed triangles about a local origin: of a file, or between horizons. Nothing was fitted or is judged."""
+    """Closed triangles about a local origin: of a file, or between horizons. Nothing was fitted or is judged.
+
+    ``notes`` are what a reader of the body must know.
+    """
 
     name: str
     origin: Floats
@@ -31,6 +35,7 @@ class MeshBody:
     #: The field of a body that was closed between horizons, and a hash of their elevations.
     closed: BetweenSurfaces | None = None
     digest: str = ""
+    notes: tuple[Message, ...] = ()
 
     @property
     def extent(self) -> tuple[Floats, Floats]:
@@ -43,7 +48,7 @@ class MeshBody:
 
 
 def read_mesh_body(file: Path, name: str) -> MeshBody:
-    """Read a closed body from a file.
+    """Read a closed body from a file; triangles that are inside out are reversed, and a note reports it.
 
     Raises
     ------
@@ -54,8 +59,12 @@ def read_mesh_body(file: Path, name: str) -> MeshBody:
     """
     from geofit.io.bodies import read_body
     from geofit.morphing.ends import require_closed
+    from geofit.morphing.notes import turned_note
 
     mesh = read_body(file)
     require_closed(mesh, name)
     origin = np.round((mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2, -1)
-    return MeshBody(name, origin, TriangleMesh(mesh.vertices - origin, mesh.triangles))
+    local = TriangleMesh(mesh.vertices - origin, mesh.triangles)
+    if local.volume >= 0:
+        return MeshBody(name, origin, local)
+    return MeshBody(name, origin, TriangleMesh(local.vertices, local.triangles[:, ::-1]), notes=(turned_note(name),))

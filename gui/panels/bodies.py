@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
 
 from geofit.bodies.accuracy import BodyAccuracy
 from geofit.bodies.settings import BodySettings
+from geofit.data.messages import Message
 from geofit.data.setting_texts import BODY_SETTINGS
 from geofit.data.verdict import Verdict
 from geofit.gui.panels.body_source import BodySourceForm
@@ -43,7 +44,7 @@ FIRST = ("epsilon", "step", "closed", "reach")
 class BodyShown:
     """What the panel shows of one body: what it is made from, its verdict, and what is to be said of it.
 
-    ``old`` is why it is to be fitted again, empty if it is not; ``origin`` how it came here.
+    ``old`` is why it is to be fitted again, empty if it is not; ``origin`` how it came here; ``warnings`` limit its use.
     """
 
     def __init__(
@@ -55,9 +56,10 @@ class BodyShown:
         waiting: bool = False,
         old: str = "",
         origin: str = "",
+        warnings: Sequence[Message] = (),
     ) -> None:
         self.provenance, self.accuracy, self.verdict = provenance, accuracy, verdict
-        self.waiting, self.old, self.origin = waiting, old, origin
+        self.waiting, self.old, self.origin, self.warnings = waiting, old, origin, warnings
 
 
 class BodiesPanel(QWidget):
@@ -159,7 +161,7 @@ class BodiesPanel(QWidget):
         self.badge.setVisible(shown is not None and judged)
         if shown is not None:
             self.badge.show_accuracy(accuracy, bool(shown.old), shown.verdict, shown.waiting)
-        self.warning.show_text("" if accuracy is None else "\n".join(map(translated, accuracy.warnings)))
+        self.warning.show_text("" if shown is None else "\n".join(map(translated, shown.warnings)))
         self.form.setVisible(judged and not isinstance(self.source.source(), ClosedMesh | BetweenHorizons | MorphFrame))
         self.origin.setText("" if shown is None else shown.origin)
         self.origin.setVisible(bool(self.origin.text()))

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QInputDialog
+from PySide6.QtWidgets import QFileDialog, QInputDialog, QMessageBox
 
+from geofit.data.files import file_stems
 from geofit.geometry.mesh import Mesh
 from geofit.implicit import Sphere, Torus
 from geofit.implicit.isosurface import isosurface
@@ -127,6 +128,18 @@ def test_a_ball_becomes_a_ring_under_the_slider(bodies, tmp_path, monkeypatch):
     again, made = make_body(source, settings, "quarter", (), folder, {})
     assert again == record.provenance
     np.testing.assert_array_equal(made.mesh.vertices, taken.mesh.vertices)
+    # A body that is there already is kept, and so is a file.
+    kept = bodies.document.state.bodies["ball"]
+    bodies.morphing.take("ball")
+    assert "already" in str(bodies.failures.pop())
+    assert bodies.document.state.bodies["ball"] is kept
+    mine = tmp_path / f"{file_stems(['ball - ring'])['ball - ring']}.json"
+    mine.write_text("mine", encoding="utf-8")
+    monkeypatch.setattr(QFileDialog, "getExistingDirectory", lambda *_, **__: str(tmp_path))
+    monkeypatch.setattr(QMessageBox, "exec", lambda _: QMessageBox.StandardButton.No)
+    bodies.morphing.ask_export()
+    bodies.idle()
+    assert mine.read_text("utf-8") == "mine"
     # Frames and table; no film, which needs no window to be right.
     bodies.morphing.export(tmp_path / "out", frames=3, film=None)
     bodies.idle()

@@ -168,6 +168,15 @@ def test_a_closed_mesh_is_a_body_and_an_open_one_is_refused(tmp_path, site, ore)
     assert isinstance(result.body, MeshBody)
     assert result.accuracy is None
     assert result.mesh.volume == pytest.approx(ore[1].mesh.volume, rel=1e-6)
+    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+    for name, faces in (
+        ("out", "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"),
+        ("in", "f 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n"),
+    ):
+        (tmp_path / f"{name}.obj").write_text(corners + faces, encoding="utf-8")
+        body = read_mesh_body(tmp_path / f"{name}.obj", name)
+        assert body.overview.volume == pytest.approx(1 / 6)
+        assert [note.code for note in body.notes] == ["morphing.mesh-turned"] * (name == "in")
     (tmp_path / "open.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n", encoding="utf-8")
     with pytest.raises(MorphError, match="edges"):
         read_mesh_body(tmp_path / "open.obj", "open")
