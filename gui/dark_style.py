@@ -38,15 +38,15 @@ class DarkStyle(Style):
         self, element: QStyle.PrimitiveElement, option: QStyleOption, painter: QPainter, widget: QWidget | None = None
     ) -> None:
         """Draw a frame, an indicator or a button."""
+        own = QPalette(option.palette)
         if element in _PRIMITIVES:
-            first = widget is not None and bool(widget.property("primary"))
-            accent = option.palette.button() if first and option.state & QStyle.StateFlag.State_Enabled else None
-            option.palette = self._framed
-            if accent is not None:
-                filled = QPalette(self._framed)
-                filled.setBrush(QPalette.ColorRole.Button, accent)
-                option.palette = filled
+            framed = self._framed_as(own)
+            if widget is not None and widget.property("primary") and option.state & QStyle.StateFlag.State_Enabled:
+                framed.setBrush(QPalette.ColorRole.Button, own.button())
+            option.palette = framed
         super().drawPrimitive(element, option, painter, widget)
+        # Fusion draws the label of a check box with the option of its indicator.
+        option.palette = own
 
     def drawControl(  # noqa: N802
         self, element: QStyle.ControlElement, option: QStyleOption, painter: QPainter, widget: QWidget | None = None
@@ -57,7 +57,7 @@ class DarkStyle(Style):
             mark_tab(element, option, painter, widget)
             return
         own = QPalette(option.palette)
-        option.palette = self._framed
+        option.palette = self._framed_as(own)
         super().drawControl(element, option, painter, widget)
         option.palette = own
 
@@ -70,8 +70,14 @@ class DarkStyle(Style):
     ) -> None:
         """Draw a spin box or a combo box."""
         if control in _COMPLEX:
-            option.palette = self._framed
+            option.palette = self._framed_as(option.palette)
         super().drawComplexControl(control, option, painter, widget)
+
+    def _framed_as(self, own: QPalette) -> QPalette:
+        """Return the palette of frames, for a widget as enabled as its own palette says."""
+        framed = QPalette(self._framed)
+        framed.setCurrentColorGroup(own.currentColorGroup())
+        return framed
 
 
 def mark_tab(element: QStyle.ControlElement, option: QStyleOption, painter: QPainter, widget: QWidget | None) -> None:

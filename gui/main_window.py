@@ -137,7 +137,7 @@ class MainWindow(QMainWindow):
         self.delivering.take_over(other.delivering)
         self.panels.view.take_over(other.panels.view)
         self._choose_in(self.actions_.exaggerations, self.panels.view.canvas.stretch)
-        for name in ("orthographic", "faded", "section"):
+        for name in ("orthographic", "faded", "section", "clip"):
             self.actions_[name].setChecked(other.actions_[name].isChecked())
 
     def check_language(self) -> None:
@@ -330,7 +330,7 @@ class MainWindow(QMainWindow):
         self.session.recorded.connect(self.tell)
         self._ends: list[Callable[[], None]] = []
         for signal, listener in (
-            (document.site_opened, lambda: self.actions_["section"].setChecked(False)),
+            (document.site_opened, self._on_opened),
             (document.site_changed, self._on_site),
             (document.saved_changed, self._show_title),
             (document.name_changed, self._show_title),
@@ -344,6 +344,10 @@ class MainWindow(QMainWindow):
 
     def _on_surfaces(self, *_: object) -> None:
         self._enable()
+
+    def _on_opened(self) -> None:
+        for name in ("section", "clip"):
+            self.actions_[name].setChecked(False)
 
     def _on_site(self) -> None:
         self._show_recent()

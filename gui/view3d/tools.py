@@ -134,6 +134,10 @@ class ClipBox:
         middle, half = box.mean(axis=0), np.maximum(np.diff(box, axis=0)[0] / 2, 0.5) * 1.02
         self.box = self._limits = np.stack([middle - half, middle + half])
 
+    def take_over(self, other: ClipBox) -> None:
+        """Become as another box is."""
+        self.box, self._limits = other.box, other._limits
+
     def planes(self, origin: Floats, stretch: float) -> Any:
         """Return the six planes in the scene's coordinates."""
         assert self.box is not None

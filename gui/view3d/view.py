@@ -192,8 +192,9 @@ class SceneView(QWidget):
         self._changed()
 
     def take_over(self, other: SceneView) -> None:
-        """Show what is shown as another view on the same site does: layers, heights, and from the same viewpoint."""
+        """Show the same site as another view does: layers, heights, clip box, and from the same viewpoint."""
         self.layers.take_over(other.layers)
+        self._clip.take_over(other._clip)
         self.set_exaggeration(other.canvas.stretch)
         if self._framed and other._framed:
             viewpoint = other.canvas.target
@@ -310,11 +311,10 @@ class SceneView(QWidget):
 
     def set_clip(self, on: bool) -> None:
         """Show a box whose sides can be moved, and nothing outside of it."""
-        box = self._stage.box()
-        if on and box is not None:
+        if on and self._clip.box is None and (box := self._stage.box()) is not None:
             self._clip.open(box)
             self._clip_moved()
-        elif self._clip.box is not None:
+        elif not on and self._clip.box is not None:
             self._clip.box = None
             self._stage.set_clip(None)
             self._changed()
@@ -376,6 +376,8 @@ class SceneView(QWidget):
             if np.abs(middle - self.canvas.origin).max() > max(10.0 * float(reach), 1.0) or not self._framed:
                 self.canvas.origin = np.round(middle)
                 self._stage.set_look(replace(self._stage.look, origin=self.canvas.origin))
+                if self._clip.box is not None:
+                    self._clip_moved()
             if not self._framed:
                 self._framed = True
                 self.canvas.viewpoint = framed(self.canvas.viewpoint, self._in_scene(self._box()), self._aspect())

@@ -90,7 +90,7 @@ def scene(app):
     """What a person set up in the scene."""
     view = app.window.panels.view
     chosen = {layer.key: (layer.visible, layer.opacity) for layer in view.layers if layer.horizon in ("A", "A1")}
-    target, names = view.canvas.target, ("section", "orthographic", "faded")
+    target, names = view.canvas.target, ("section", "orthographic", "faded", "clip")
     looks = (*(target.centre + view.canvas.origin * (1, 1, view.canvas.stretch)), target.distance, *target.axes[0])
     return (
         {key.replace("A1", "A"): one for key, one in chosen.items()},
@@ -99,6 +99,7 @@ def scene(app):
         [app.window.actions_[name].isChecked() for name in names],
         None if app.window.showing.line is None else app.window.showing.line.tolist(),
         sum(handle.drawn for handle in view.handles()),
+        np.round([handle.xyz for handle in view.handles()[-6:]], 6).tolist(),
     )
 
 
@@ -113,6 +114,10 @@ def test_the_scene_stays_as_it_was_set_up_until_another_site_is_opened(three, tm
     window.actions_["orthographic"].setChecked(True)
     window.actions_["faded"].setChecked(False)
     window.actions_.exaggerations.actions()[-1].trigger()
+    window.actions_["clip"].setChecked(True)
+    east = view.handles()[-3]
+    east.moved(east.xyz - (20.0, 0.0, 0.0))
+    assert view.handles()[-3].xyz[0] == east.xyz[0] - 20.0
     view.view("north")
     view.canvas.land()
     three.idle()
@@ -135,7 +140,8 @@ def test_the_scene_stays_as_it_was_set_up_until_another_site_is_opened(three, tm
     three.desktop.session.begin(read_site(tmp_path / "site.toml"), tmp_path / "site.toml")
     three.idle()
     assert three.window.panels.view.layers["points:A"].visible
-    assert not three.window.actions_["section"].isChecked()
+    assert not any(three.window.actions_[name].isChecked() for name in ("section", "clip"))
+    assert not any(handle.drawn for handle in three.window.panels.view.handles())
 
 
 def test_a_fit_goes_to_the_horizon_that_was_renamed_meanwhile(three):

@@ -9,6 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QPalette
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
+    QCheckBox,
     QComboBox,
     QDialogButtonBox,
     QDockWidget,
@@ -17,6 +18,7 @@ from PySide6.QtWidgets import (
     QLineEdit,
     QMessageBox,
     QPushButton,
+    QRadioButton,
     QStyle,
     QTableWidget,
     QTabWidget,
@@ -140,3 +142,18 @@ def test_a_theme_that_is_switched_while_the_window_is_open_reaches_every_widget(
             role = QPalette.ColorRole.ButtonText if isinstance(widget, QPushButton) else QPalette.ColorRole.WindowText
             text = widget.palette().color(role).lightness()
             assert abs(text - paper) > 60, f"{theme}: {widget.text()!r} can hardly be read"
+
+
+@pytest.mark.parametrize("kind", [QCheckBox, QRadioButton])
+def test_the_label_of_what_cannot_be_checked_stands_back(theme, qtbot, kind):
+    def strongest(enabled):
+        box = kind("Surface")
+        qtbot.addWidget(box)
+        box.setEnabled(enabled)
+        box.resize(box.sizeHint())
+        image = box.grab().toImage()
+        ground = box.palette().window().color()
+        label = range(image.width() // 3, image.width())
+        return max(contrast(image.pixelColor(x, y), ground) for x in label for y in range(image.height()))
+
+    assert strongest(False) < 0.6 * strongest(True)
