@@ -57,7 +57,10 @@ class Help(QObject):
         """Open a rock volume in a window of its own."""
         from geofit.gui.dialogs.rock_volume import RockVolumeDialog
 
-        RockVolumeDialog(self._window).exec()
+        dialog = RockVolumeDialog(self._window)
+        dialog.exec()
+        # Else the window would keep it, with its volume, until the end.
+        dialog.deleteLater()
 
     def system_report(self) -> None:
         """Show what the application runs on."""

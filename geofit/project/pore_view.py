@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -95,8 +96,20 @@ class PoreView:
     vertex_pore: NDArray[np.int64]
 
 
-def read_grey(path: Path, progress: Progress | None = None) -> GreyVolume:
+def read_grey(
+    path: Path, shape: Sequence[int] | None = None, dtype: str | None = None, progress: Progress | None = None
+) -> GreyVolume:
     """Read a volume to look at it, and propose a threshold.
+
+    Parameters
+    ----------
+    path : path
+    shape : three int, optional
+        Voxels along each axis of a raw file, the slowest first.
+    dtype : str, optional
+        Type of a raw file's values.
+    progress : callable, optional
+        ``progress(stage, fraction)``; False stops.
 
     Raises
     ------
@@ -109,7 +122,7 @@ def read_grey(path: Path, progress: Progress | None = None) -> GreyVolume:
     from geofit.pores.volume import check_array
 
     tell(progress, "reading", 0.0)
-    values, voxel = read_voxels(path)
+    values, voxel = read_voxels(path, shape=shape, dtype=dtype)
     check_array(values)
     tell(progress, "histogram", 0.6)
     if values.dtype == bool:
@@ -117,7 +130,8 @@ def read_grey(path: Path, progress: Progress | None = None) -> GreyVolume:
     each = value_counts(values)
     counts, edges = grey_histogram(values) if each is None else histogram_of_counts(*each)
     threshold = otsu_of_histogram(counts, edges) if np.count_nonzero(counts) > 2 else None
-    return GreyVolume(path.name, values, voxel, counts, edges, threshold, each, path if sliceable(path) else None)
+    file = path if shape is None and sliceable(path) else None
+    return GreyVolume(path.name, values, voxel, counts, edges, threshold, each, file)
 
 
 def pore_view(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +11,7 @@ from PySide6.QtCore import QSignalBlocker, Qt
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
+    QDialog,
     QDoubleSpinBox,
     QFileDialog,
     QFormLayout,
@@ -20,11 +23,15 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from geofit.data.errors import InputError
+from geofit.gui.dialogs.raw_volume import RawVolumeDialog
 from geofit.gui.dialogs.scene_dialog import SceneDialog
+from geofit.gui.panels.fit_panel import Banner
 from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.panels.volume_slices import VolumeSlices
 from geofit.gui.translate import translated
 from geofit.gui.view3d.pore_scene import PoreScene
+from geofit.io.volumes import RAW
 from geofit.project.pore_view import GreyVolume, PoreView, pore_view, read_grey
 
 __all__ = ["RockVolumeDialog"]
@@ -33,12 +40,45 @@ __all__ = ["RockVolumeDialog"]
 MICRO = 1e6
 #: No value of a voxel: which values are pore is never guessed.
 UNSTATED = -1e12
+#: Errors of raw files whose remedy is a shape and a type.
+SHAPELESS = ("io.raw-without-shape", "io.raw-size-differs", "io.shape-not-volume")
+
+
+class PoreValue(QDoubleSpinBox):
+    """A limit of the pore values, as fine as the values of a volume; its first step leads from none to ``first``."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.first = 0.0
+        self.setRange(UNSTATED, -UNSTATED)
+        self.setDecimals(0)
+        self.setSpecialValueText(self.tr("not stated"))
+
+    def fit(self, volume: GreyVolume) -> None:
+        """Take decimals and steps from the range of a volume's values: whole numbers have none between them."""
+        whole = volume.values.dtype.kind in "ui"
+        power = math.floor(math.log10(volume.edges[-1] - volume.edges[0] or 1.0))
+        self.setDecimals(0 if whole else max(4 - power, 0))
+        self.setSingleStep(max(10.0 ** (power - 2), 1.0 if whole else 0.0))
+        self.first = float(math.ceil(volume.edges[0])) if whole else self.below(volume.edges[0])
+
+    def below(self, value: float) -> float:
+        """Return the largest number with the decimals of this field that does not exceed a value."""
+        unit = 10.0 ** self.decimals()
+        return math.floor(value * unit) / unit
+
+    def stepBy(self, steps: int) -> None:  # noqa: N802
+        """Begin at the values of the volume."""
+        if self.value() == UNSTATED:
+            self.setValue(self.first)
+        else:
+            super().stepBy(steps)
 
 
 class RockVolumeDialog(SceneDialog):
     """Opens a volume, asks which values are pore and how large a voxel is, and shows network and surface.
 
-    ``volume`` and ``view`` hold what was opened and made last.
+    ``volume`` and ``view`` hold what was opened and made last; ``raw`` asks for the shape of a raw file, if it must.
     """
 
     scene: PoreScene
@@ -49,19 +89,21 @@ class RockVolumeDialog(SceneDialog):
         self.setWindowFlag(Qt.WindowType.WindowMaximizeButtonHint)
         self.volume: GreyVolume | None = None
         self.view: PoreView | None = None
+        self.raw: RawVolumeDialog | None = None
+        self._reading: tuple[Path, Sequence[int] | None, str | None] | None = None
+        self._made: tuple[float, ...] = ()
+        self._verdict = ("", "none")
+        self.old = Banner()
         self.slices, self.scene, self.table = VolumeSlices(), PoreScene(), DataTable()
         self.table.setAccessibleName(self.tr("Figures of the pore space"))
         self.open_button = QPushButton(self.tr("&Open a volume…"))
-        self.low, self.high, self.edge = QDoubleSpinBox(), QDoubleSpinBox(), QDoubleSpinBox()
-        for box in (self.low, self.high):
-            box.setRange(UNSTATED, 1e12)
-            box.setDecimals(1)
-            box.setSpecialValueText(self.tr("not stated"))
+        self.low, self.high, self.edge = PoreValue(), PoreValue(), QDoubleSpinBox()
         self.edge.setRange(0.0, 1e9)
         self.edge.setDecimals(3)
         self.edge.setSuffix(" µm")
         self.edge.setSpecialValueText(self.tr("not stated"))
-        self.porosity = QLabel()
+        self.edges, self.porosity = QLabel(), QLabel()
+        self.edges.hide()
         self.colour = QComboBox()
         self.colour.addItem(self.tr("by radius"), "radius")
         self.colour.addItem(self.tr("by connection"), "connection")
@@ -82,12 +124,35 @@ class RockVolumeDialog(SceneDialog):
             box_.toggled.connect(lambda on, part=part: self.scene.set_visible(part, on))
         self.refresh()
 
-    def read(self, path: Path) -> None:
-        """Read a volume and show its middle slice."""
+    def read(self, path: Path, shape: Sequence[int] | None = None, dtype: str | None = None) -> None:
+        """Read a volume, if raw of this shape and type, and show its middle slice."""
         self.say("")
+        self._reading = path, shape, dtype
         self.begin(
-            read_grey, path, on_done=self._opened, on_stopped=lambda: self.say(self.tr("Stopped.")), in_process=False
+            read_grey,
+            path,
+            shape,
+            dtype,
+            on_done=self._opened,
+            on_stopped=lambda: self.say(self.tr("Stopped.")),
+            in_process=False,
         )
+
+    def tell_failure(self, error: Exception) -> None:
+        """Say what went wrong; ask for the shape of a raw file that does not state it."""
+        if self._reading is None or not isinstance(error, InputError) or error.code not in SHAPELESS:
+            super().tell_failure(error)
+            return
+        # The reader's remedy is for programs.
+        fault = translated(error.fault)
+        self.say(fault, "failed")
+        path, shape, dtype = self._reading
+        raw = Path(path.name.lower().removesuffix(".gz")).suffix in RAW
+        differs = error.code == "io.raw-size-differs" and (raw or shape is not None)
+        if differs or error.code == "io.raw-without-shape":
+            self.raw = RawVolumeDialog(fault, shape, dtype, self)
+            self.raw.finished.connect(self._shape_stated)
+            self.raw.open()
 
     def refresh(self) -> None:
         """Enable what can be done: pores can be found once a volume is open and its voxel is stated."""
@@ -102,8 +167,11 @@ class RockVolumeDialog(SceneDialog):
     def _lay_out(self) -> None:
         form = QFormLayout()
         form.addRow(self.tr("Pore values from"), self.low)
-        form.addRow(self.tr("to"), self.high)
-        form.addRow(self.tr("Edge of a voxel"), self.edge)
+        form.addRow(self.tr("Pore values to"), self.high)
+        edges = QHBoxLayout()
+        edges.addWidget(self.edge, 1)
+        edges.addWidget(self.edges)
+        form.addRow(self.tr("Edge of a voxel"), edges)
         form.addRow(self.tr("Porosity"), self.porosity)
         left = QWidget()
         column = QVBoxLayout(left)
@@ -118,6 +186,7 @@ class RockVolumeDialog(SceneDialog):
         right = QWidget()
         column = QVBoxLayout(right)
         column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.old)
         column.addWidget(self.scene, 3)
         column.addLayout(colours)
         column.addWidget(self.table, 1)
@@ -141,65 +210,119 @@ class RockVolumeDialog(SceneDialog):
         if path:
             self.read(Path(path))
 
+    def _shape_stated(self, result: int) -> None:
+        form, self.raw = self.raw, None
+        assert form is not None
+        assert self._reading is not None
+        form.deleteLater()
+        if result == QDialog.DialogCode.Accepted:
+            self.read(self._reading[0], *form.stated)
+
     def _opened(self, volume: GreyVolume) -> None:
-        self.volume, self.view = volume, None
+        self.volume, self.view, self._reading = volume, None, None
+        self.scene.clear()
+        self._show_figures([])
+        self.key.clear()
+        self.old.show_text("")
         self.setWindowTitle(self.tr("Rock volume {name}").format(name=volume.name))
         # A threshold is a proposal that the picture shows; of labels none is likelier than another.
         grey = volume.threshold is not None
-        stated = (
-            (self.low, float(np.floor(volume.edges[0])) if grey else UNSTATED),
-            (self.high, float(volume.threshold) if volume.threshold is not None else UNSTATED),
-            (self.edge, volume.voxel[0] * MICRO if volume.voxel else 0.0),
-        )
-        for box, value in stated:
-            with QSignalBlocker(box):  # they are shown together, below
-                box.setValue(value)
+        known = self._file_edges()
+        edge = known[0] * MICRO if known else 0.0
+        with QSignalBlocker(self.low), QSignalBlocker(self.high), QSignalBlocker(self.edge):  # shown together, below
+            for box in (self.low, self.high):
+                box.fit(volume)
+            self.edge.setDecimals(max(3, 3 - math.floor(math.log10(edge))) if edge else 3)
+            self.low.setValue(self.low.first if grey else UNSTATED)
+            self.high.setValue(self.high.below(volume.threshold) if volume.threshold is not None else UNSTATED)
+            self.edge.setValue(edge)
         self.slices.show_volume(volume)
         self._changed()
-        self.say(
-            self.tr("The threshold is Otsu's. Check it, and state the edge of a voxel.")
-            if grey
-            else self.tr("State which values are pore, and the edge of a voxel.")
-        )
+        if grey and known:
+            self.say(self.tr("The threshold is Otsu's. Check it."))
+        elif grey:
+            self.say(self.tr("The threshold is Otsu's. Check it, and state the edge of a voxel."))
+        elif known:
+            self.say(self.tr("State which values are pore."))
+        else:
+            self.say(self.tr("State which values are pore, and the edge of a voxel."))
+
+    def _file_edges(self) -> tuple[float, float, float] | None:
+        """Return the edges of a voxel in metres that the file states, if they are lengths."""
+        edges = self.volume.voxel if self.volume is not None else None
+        return edges if edges is not None and min(edges) > 0 else None
+
+    def _voxel(self) -> tuple[float, ...]:
+        """Return the edges of a voxel in metres: the first is stated; unequal ones keep the ratio that the file has."""
+        known, edge = self._file_edges(), self.edge.value() / MICRO
+        return tuple(edge * e / known[0] for e in known) if known else (edge,) * 3
 
     def _changed(self) -> None:
         if self.volume is not None:
             low, high = self.low.value(), self.high.value()
             self.slices.show_range(low, high)
+            # A range that begins at its start is not empty.
+            self.high.first = max(self.low.first, low)
+            voxel = self._voxel()
+            self.edges.setVisible(len(set(voxel)) > 1)
+            edges = " × ".join(f"{edge * MICRO:.{self.edge.decimals()}f}" for edge in voxel)
+            self.edges.setText(self.tr("axes 0, 1, 2: {edges} µm").format(edges=edges))
             stated = UNSTATED < low <= high
             self.porosity.setText(f"{100 * self.volume.share(low, high):.2f} %" if stated else "–")
+        if self.view is not None:
+            old = self._stated() != self._made
+            self.old.show_text(self.tr("The pores are older than their settings: press Find pores.") if old else "")
+            self.say(*("", "none") if old else self._verdict)
         self.refresh()
+
+    def _stated(self) -> tuple[float, ...]:
+        return self.low.value(), self.high.value(), self.edge.value()
 
     def _find(self) -> None:
         assert self.volume is not None
-        stated, edge = self.volume.voxel, self.edge.value() / MICRO
-        voxel = tuple(edge * e / stated[0] for e in stated) if stated else (edge,) * 3
+        self._reading = None
+        if not self.volume.share(self.low.value(), self.high.value()):
+            self._say_none(self.volume)
+            return
         self.say("")
         self.begin(
             pore_view,
             self.volume.values if self.volume.file is None else self.volume.file,
             self.low.value(),
             self.high.value(),
-            voxel,
+            self._voxel(),
             on_done=self._found,
             on_stopped=lambda: self.say(self.tr("Stopped. Nothing has changed.")),
         )
 
+    def _say_none(self, volume: GreyVolume) -> None:
+        """Say that no voxel has the pore values, in the numbers of the fields."""
+        low, high = self.low.text(), self.high.text()
+        text = (
+            self.tr("No voxel has the value {low}. The values of the volume are from {first} to {last}.")
+            if low == high
+            else self.tr(
+                "No voxel has a value from {low} to {high}. The values of the volume are from {first} to {last}."
+            )
+        )
+        first, last = (self.low.textFromValue(value) for value in (self.low.first, self.low.below(volume.edges[-1])))
+        self.say(text.format(low=low, high=high, first=first, last=last), "failed")
+
+    def _show_figures(self, rows: list[tuple[str, str]]) -> None:
+        names, values = np.array(rows, str).reshape(-1, 2).T
+        self.table.show_columns([TableColumn(self.tr("Figure"), names), TableColumn(self.tr("Value"), values)])
+
     def _found(self, view: PoreView) -> None:
-        self.view = view
+        self.view, self._made = view, self._stated()
         self.scene.show_view(view)
         self._recolour()
-        names, values = zip(*self._figures(view), strict=True)
-        self.table.show_columns(
-            [TableColumn(self.tr("Figure"), np.array(names)), TableColumn(self.tr("Value"), np.array(values))]
-        )
+        self._show_figures(self._figures(view))
         messages = [translated(text) for text in view.permeability.messages]
         if not len(view.triangles):
             messages.append(self.tr("The volume is too large for a surface; cut out a part of it to see one."))
-        self.say(
-            "\n".join(messages) or self.tr("The pore space connects all faces."), "stale" if messages else "passed"
-        )
-        self.refresh()
+        text = "\n".join(messages) or self.tr("The pore space connects all faces.")
+        self._verdict = (text, "stale" if messages else "passed")
+        self._changed()
 
     def _figures(self, view: PoreView) -> list[tuple[str, str]]:
         network, unit = view.network, view.network.unit * MICRO

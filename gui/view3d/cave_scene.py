@@ -35,6 +35,12 @@ class CaveScene(SmallScene):
         #: Map coordinates of the scene's origin: single precision would lose centimetres in them.
         self.origin = np.zeros(3)
 
+    def set_dark(self, dark: bool) -> None:
+        """Follow the theme: stations are dark on a light background, and light on a dark one."""
+        super().set_dark(dark)
+        if "stations" in self.actors:
+            self.actors["stations"].prop.color = "#dde3e8" if dark else "#26313b"
+
     def show_survey(self, adjusted: AdjustedSurvey) -> None:
         """Draw the centre line and stations of another survey, without a body."""
         import pyvista as pv

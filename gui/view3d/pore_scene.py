@@ -64,6 +64,11 @@ class PoreScene(SmallScene):
         self._paint()
         self.frame(np.array([[0.0] * 3, np.array(network.shape) * network.edges]))
 
+    def clear(self) -> None:
+        """Remove network and surface."""
+        super().clear()
+        self._view = None
+
     def set_colour(self, colour: Colour) -> None:
         """Colour by the radius of pores in voxels, or by the axes along which they percolate."""
         self.colour = colour

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from PySide6.QtCore import QEvent
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
@@ -39,13 +40,18 @@ class SmallScene(QWidget):
         self._part: dict[str, str] = {}
         self._visible = dict.fromkeys(parts, True)
         self._frame: Any = None
-        self.dark = is_dark(self.palette())
-        self.canvas.set_background_colour(QColor("#1a1f24" if self.dark else "#ffffff"))
+        self._open = True
+        self.set_dark(is_dark(self.palette()))
 
     @property
     def shown(self) -> tuple[str, ...]:
         """Names of the actors that are drawn and seen."""
         return tuple(name for name, actor in self.actors.items() if actor.GetVisibility())
+
+    def set_dark(self, dark: bool) -> None:
+        """Follow the theme: a dark or a light background."""
+        self.dark = dark
+        self.canvas.set_background_colour(QColor("#1a1f24" if dark else "#ffffff"))
 
     def set_visible(self, part: str, visible: bool) -> None:
         """Show or hide a part."""
@@ -55,9 +61,11 @@ class SmallScene(QWidget):
         self.canvas.render()
 
     def clear(self) -> None:
-        """Remove all actors."""
+        """Remove all actors and the edges of the box."""
         for name in list(self.actors):
             self.remove(name)
+        self._remove_frame()
+        self.canvas.render()
 
     def remove(self, name: str) -> None:
         """Remove an actor, if there is one of this name."""
@@ -77,21 +85,33 @@ class SmallScene(QWidget):
         return actor
 
     def frame(self, box: NDArray[np.float64], *, outline: bool = True) -> None:
-        """Move the camera so that a box (2, 3) is seen, and draw its edges."""
+        """Move the camera so that a box (2, 3) and all actors are seen, and draw the edges of the box."""
         import pyvista as pv
 
-        if self._frame is not None:
-            self.canvas.renderer.RemoveActor(self._frame)
-            self._frame = None
+        self._remove_frame()
         if outline:
             (x0, y0, z0), (x1, y1, z1) = box.tolist()
             self._frame = pv.Actor(mapper=pv.DataSetMapper(pv.Box((x0, x1, y0, y1, z0, z1)).outline()))
             self._frame.prop.color = "#8a939c"
             self._frame.prop.lighting = False
             self.canvas.renderer.AddActor(self._frame)
-        self.canvas.look(framed(self.canvas.viewpoint, box, self.width() / max(self.height(), 1)))
+        drawn = [np.reshape(actor.GetBounds(), (3, 2)).T for actor in self.actors.values()]
+        whole = np.array([np.min([box, *drawn], axis=(0, 1)), np.max([box, *drawn], axis=(0, 1))])
+        self.canvas.look(framed(self.canvas.viewpoint, whole, self.width() / max(self.height(), 1)))
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Draw in the colours of another theme."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and self._open:
+            self.set_dark(is_dark(self.palette()))
 
     def close(self) -> bool:
         """Let go of the view's context."""
+        self._open = False
         self.canvas.close()
         return super().close()
+
+    def _remove_frame(self) -> None:
+        if self._frame is not None:
+            self.canvas.renderer.RemoveActor(self._frame)
+            self._frame = None
