@@ -14,6 +14,7 @@ from geofit.gui.dialogs.survey import SurveyDialog
 from geofit.project.cave_run import CaveRun
 from geofit.project.cave_view import passage_mesh
 from geofit.project.document import Document
+from geofit.project.known_sources import file_sources
 from geofit.surfaces.protocol import Surface
 
 __all__ = ["Surveys"]
@@ -57,16 +58,25 @@ class Surveys(QObject):
 
     def _add(self, run: CaveRun) -> None:
         """Write the body beside the site, and take it as a body of closed triangles: one step that can be undone."""
-        name = Path(run.adjusted.survey.name).stem
-        folder = self._document.folder or Path.cwd()
-        file = folder / f"{file_stems([name])[name]}_passages.ply"
         title = self.tr("Add the body of {name}").format(name=run.adjusted.survey.name)
 
         def added(written: Path) -> None:
             self._bodies.take_mesh(written)
             self.reported.emit(self.tr("Wrote {file}; its body is being added.").format(file=written.name))
 
-        self._activity.do(title, passage_mesh, run, file, on_done=added)
+        # The file is named when its turn comes: those of bodies that are being added are there by then.
+        self._activity.prepare(title, lambda: (passage_mesh, (run, self._free_file(run))), on_done=added)
+
+    def _free_file(self, run: CaveRun) -> Path:
+        """Return a file beside the site that nothing has and no body is made from."""
+        name = Path(run.adjusted.survey.name).stem
+        folder, stem = self._document.folder or Path.cwd(), f"{file_stems([name])[name]}_passages"
+        site = self._document.site_folder or folder
+        used = {(site / source.file).resolve() for source in file_sources(self._document.state.bodies.values())}
+        file, turn = folder / f"{stem}.ply", 2
+        while file.exists() or file.resolve() in used:
+            file, turn = folder / f"{stem}_{turn}.ply", turn + 1
+        return file
 
     def _gone(self, _: int) -> None:
         self.dialog = None

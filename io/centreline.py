@@ -179,7 +179,7 @@ def _rows(source: Source, journal: Journal) -> Rows:
                 ),
                 message(
                     "io.state-columns-where-wrong",
-                    "If this is wrong, state columns = {entry}.",
+                    "If this is wrong, rename the column, or state columns = {entry} in a site or mapping file.",
                     entry=f"{{ {role} = ... }}",
                 ),
                 column=header,
@@ -203,7 +203,7 @@ def _walls(rows: Rows, level: str) -> np.ndarray:
             rows.reject(
                 i,
                 role,
-                message("io.size-too-large", "The {role} is above {longest:.0f} m", role=role, longest=LONGEST),
+                message("io.size-too-large", "The {role} is above {longest} m", role=role, longest=int(LONGEST)),
                 message("io.correct-value-or-unit", "Correct the value or the unit."),
             )
         sizes[role] = np.where(value >= 0, value, np.nan)

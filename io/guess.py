@@ -214,7 +214,7 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
                 taken_as(guess),
                 message(
                     "io.state-columns-where-wrong",
-                    "If this is wrong, state columns = {entry}.",
+                    "If this is wrong, rename the column, or state columns = {entry} in a site or mapping file.",
                     entry=f"{{ {role} = ... }}",
                 ),
                 column=guess.column,
@@ -245,7 +245,7 @@ def _warn_of_unused(table: Table, guess: RoleGuess, journal: Journal) -> None:
         ),
         message(
             "io.state-columns-where-wrong",
-            "If this is wrong, state columns = {entry}.",
+            "If this is wrong, rename the column, or state columns = {entry} in a site or mapping file.",
             entry=f"{{ {guess.role} = ... }}",
         ),
         column=guess.column,

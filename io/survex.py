@@ -185,7 +185,8 @@ class _Reader:
                 row,
                 line,
             )
-            return settings
+            # What is in an unknown unit must not count as metres or degrees.
+            return settings.without_units(rest) if word == "units" else settings
         self.list_(
             "warning",
             message("io.command-not-read", "The command *{word} is not read", word=Untranslated(word)),

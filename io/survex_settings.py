@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from geofit.data.errors import InputError
+from geofit.data.messages import message
 from geofit.io.units import METRES
 
 __all__ = ["QUANTITIES", "Settings", "finite", "unit_of"]
@@ -21,6 +24,10 @@ _SAME = {
     "length": "tape", "bearing": "compass", "gradient": "clino", "backlength": "backtape", "backbearing": "backcompass",
     "backgradient": "backclino", "ceiling": "up", "floor": "down",
 }  # fmt: skip
+#: Quantities of data that are not read.
+_OTHERS = frozenset(["altitude", "count", "counter", "depth", "dx", "dy", "dz", "easting", "northing"])
+_READ = (*QUANTITIES["length"], *QUANTITIES["angle"])
+_UNKNOWN = "unknown"
 _NORMAL = ("from", "to", "tape", "compass", "clino")
 _READINGS = {
     "normal": {"from", "to", "tape", "backtape", "compass", "backcompass", "clino", "backclino", "ignore", "ignoreall"},
@@ -55,8 +62,8 @@ def finite(cell: str) -> float:
 class Settings:
     """The state that ``*begin`` stores and ``*end`` restores.
 
-    ``units``: (kind, factor) of a reading. ``calibration``: (zero error, scale, whether the zero error was measured
-    outside the instrument and is in metres or degrees).
+    ``units``: (kind, factor) of a reading; the kind is "unknown" where the unit could not be read. ``calibration``:
+    (zero error, scale, whether the zero error was measured outside the instrument and is in metres or degrees).
     """
 
     prefix: tuple[str, ...] = ()
@@ -103,8 +110,17 @@ class Settings:
             return replace(self, units={})
         kind, factor = unit_of(words[-1])
         names, numbers = _split(words[:-1])
+        if not names or numbers[1:] or 0.0 in numbers or not all(_measures(kind, name) for name in names):
+            raise ValueError(words)
         factor *= numbers[0] if numbers else 1.0
         return replace(self, units={**self.units, **dict.fromkeys(names, (kind, factor))})
+
+    def without_units(self, words: list[str]) -> Settings:
+        """Return the settings after ``*units`` that cannot be read: its quantities, or all, have no unit any more."""
+        names: Sequence[str] = _READ
+        with suppress(KeyError):
+            names = _split(words[:-1])[0] or _READ
+        return replace(self, units={**self.units, **dict.fromkeys(names, (_UNKNOWN, np.nan))})
 
     def with_calibration(self, words: list[str]) -> Settings:
         """Return the settings after ``*calibrate``: quantities, zero error, an optional unit, an optional scale."""
@@ -144,14 +160,32 @@ class Settings:
         return found
 
     def reading(self, name: str, cell: str) -> float:
-        """Return a reading in metres or degrees, calibrated; nan for "-" (omitted). ValueError if not a number."""
+        """Return a reading in metres or degrees, calibrated; nan for "-" (omitted). ValueError if not a number.
+
+        Raises
+        ------
+        InputError
+            If the unit of the reading is unknown.
+        """
         if cell == "-":
             return float("nan")
         kind, factor = self.units.get(name, ("", 1.0))
+        if kind == _UNKNOWN:
+            raise InputError(
+                message("io.reading-unit-unknown", "The unit of the {reading} is unknown", reading=name),
+                message("io.correct-units", "Correct the command *units before this line."),
+            )
         zero, scale, outside = self.calibration.get(name, (0.0, 1.0, False))
         value = finite(cell) * scale if outside else (finite(cell) - zero) * scale
         value = float(np.degrees(np.arctan(value * factor / 100.0))) if kind == "percent" else value * factor
         return value - zero if outside else value
+
+
+def _measures(kind: str, name: str) -> bool:
+    """Return whether a unit of a kind fits a quantity."""
+    if name in QUANTITIES["angle"]:
+        return kind == "angle" or (kind == "percent" and name in ("clino", "backclino"))
+    return kind == "length" or name in ("count", "counter")
 
 
 def _split(words: list[str]) -> tuple[list[str], list[float]]:
@@ -162,7 +196,7 @@ def _split(words: list[str]) -> tuple[list[str], list[float]]:
             numbers.append(finite(word))
         except ValueError:
             name = _SAME.get(word.casefold(), word.casefold())
-            if name not in (*QUANTITIES["length"], *QUANTITIES["angle"]):
+            if name not in _READ and name not in _OTHERS:
                 raise KeyError(word) from None
             names.append(name)
     return names, numbers

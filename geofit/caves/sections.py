@@ -109,7 +109,7 @@ def sections(adjusted: AdjustedSurvey, radius: float | None = None) -> Sections:
             message(
                 "caves.survey-without-walls",
                 "The survey {name} has no wall distance at any station, so its passages have no size. "
-                "Measure walls, or give radius = ... in metres.",
+                "Measure walls, or give a wall distance (in scripts: radius, in metres).",
                 name=Untranslated(survey.name),
             )
         )

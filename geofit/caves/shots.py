@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
@@ -14,6 +15,9 @@ from geofit.data.messages import message
 from geofit.data.site import ImportIssue, TableCount
 
 __all__ = ["ShotList", "polar", "require_length", "require_walls"]
+
+#: Lengths from here on are written with a power of ten, metres.
+_ABSURD = 1e9
 
 
 def polar(length: float, azimuth: float, inclination: float) -> NDArray[np.float64]:
@@ -35,9 +39,9 @@ def require_length(offset: NDArray[np.float64]) -> None:
         raise InputError(
             message(
                 "caves.shot-too-long",
-                "The shot is {length:.4g} m long; at most {longest:.0f} m are allowed",
-                length=length,
-                longest=LONGEST,
+                "The shot is {length} m long; at most {longest} m are allowed",
+                length=_shown(length),
+                longest=_shown(LONGEST),
             ),
             message("caves.correct-reading-or-unit", "Correct the reading or the unit, or add stations between."),
         )
@@ -56,12 +60,17 @@ def require_walls(walls: Iterable[float]) -> None:
             raise InputError(
                 message(
                     "caves.wall-out-of-range",
-                    "A wall is {distance:.4g} m away; 0 to {longest:.0f} m are possible",
-                    distance=wall,
-                    longest=LONGEST,
+                    "A wall is {distance} m away; 0 to {longest} m are possible",
+                    distance=_shown(wall),
+                    longest=_shown(LONGEST),
                 ),
                 message("caves.correct-wall", "Correct the reading or the unit, or leave it out."),
             )
+
+
+def _shown(metres: float) -> float | str:
+    """Return a length for a message: whole metres, which are written in groups, unless it is negative or absurd."""
+    return math.ceil(metres) if 0 <= metres < _ABSURD else f"{metres:.4g}".replace("-", "−", int(metres < 0))
 
 
 @dataclass

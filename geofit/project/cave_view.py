@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.errors import GeofitError
+from geofit.data.files import file_stems
 from geofit.data.languages import EN, Language
 from geofit.data.progress import Progress, tell
 from geofit.project.cave_run import CaveRun, cut_passages, measure_passages, read_survey, write_passages
@@ -21,8 +23,8 @@ if TYPE_CHECKING:
     from geofit.surfaces.protocol import HasElevation
 
 __all__ = [
-    "WallRings", "cut_view", "measured_view", "passage_mesh", "read_adjusted", "shot_states", "wall_rings",
-    "write_view",
+    "WallRings", "cut_view", "measured_view", "passage_mesh", "read_adjusted", "shot_states", "view_files",
+    "wall_distance_counts", "wall_rings", "write_view",
 ]  # fmt: skip
 
 Floats = NDArray[np.float64]
@@ -53,7 +55,20 @@ def read_adjusted(path: Path, *, progress: Progress | None = None) -> AdjustedSu
     from geofit.caves.adjust import adjust_survey
 
     tell(progress, "read", 0.0)
-    return adjust_survey(read_survey(path))
+    survey = read_survey(path)
+    try:
+        return adjust_survey(survey)
+    except GeofitError as error:
+        # Rows that are not used may be why stations are unconnected.
+        error.issues = error.issues or survey.issues
+        raise
+
+
+def wall_distance_counts(survey: Survey) -> bool:
+    """Return whether a wall distance has an effect: no station has walls at its sides, or none has roof and floor."""
+    pairs = survey.walls[:, :2], survey.walls[:, 2:]
+    # Two walls of 0 were not measured.
+    return not all(np.isfinite(pair[(pair != 0).any(axis=1)]).any() for pair in pairs)
 
 
 def measured_view(
@@ -76,6 +91,20 @@ def write_view(
 
     tell(progress, "files", 0.0)
     return replace(run, files=write_cave_report(run, folder, t)) if report else write_passages(run, folder)
+
+
+def view_files(run: CaveRun, folder: Path, report: bool = False) -> tuple[Path, ...]:
+    """Return the files that :func:`write_view` writes."""
+    name = Path(run.adjusted.survey.name).stem
+    endings = (
+        ["_report.html", "_report.pdf"] if report else [".json", "_stations.csv", "_loops.csv", "_filled_walls.csv"]
+    )
+    if not report:
+        endings += ["_strata.csv"] if run.strata else []
+        endings += ["_clearance.csv"] if run.clearance is not None else []
+        endings += [".stl", ".stl.origin.txt", ".vtp"] if len(run.triangles.triangles) else []
+    stem = file_stems([name])[name]
+    return tuple(folder / f"{stem}{ending}" for ending in endings)
 
 
 def passage_mesh(run: CaveRun, file: Path, *, progress: Progress | None = None) -> Path:

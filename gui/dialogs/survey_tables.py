@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from geofit.caves.adjust import AdjustedSurvey, Loop
 from geofit.caves.strata import Stratum
-from geofit.caves.survey import Survey
+from geofit.data.errors import InputError
+from geofit.data.site import ImportIssue
 from geofit.gui.lengths import in_title, shown_length
 from geofit.gui.panels.tables import TableColumn
 from geofit.gui.translate import translated, user_language
@@ -60,7 +63,7 @@ def loop_columns(adjusted: AdjustedSurvey) -> list[TableColumn]:
         TableColumn(t("Loop"), np.array([_loop(loop) for loop in loops], dtype=np.str_)),
         TableColumn(t("Length, m"), np.array([loop.length for loop in loops], float), 1),
         TableColumn(t("Misclosure, m"), np.array([loop.distance for loop in loops], float), 2),
-        TableColumn(t("Share, %"), np.array([loop.percent for loop in loops], float), 2),
+        TableColumn("%", np.array([loop.percent for loop in loops], float), 2, t("Misclosure, % of the length")),
         TableColumn(t("Expected, m"), np.array([loop.expected for loop in loops], float), 2),
         TableColumn(t("Result"), np.array(words, dtype=np.str_)),
     ]
@@ -88,18 +91,18 @@ def stratum_columns(run: CaveRun | None) -> list[TableColumn]:
     ]
 
 
-def issue_columns(survey: Survey) -> list[TableColumn]:
-    """Return the rows that the reader did not use, and what it assumed."""
-    t, issues = user_language(), survey.issues
-    marks = {"error": t("not used"), "warning": t("warning")}
+def issue_columns(issues: Sequence[ImportIssue]) -> list[TableColumn]:
+    """Return the rows that the reader did not use, and what it assumed; the gravest first."""
+    t = user_language()
+    marks = {"error": t("not used"), "warning": t("warning"), "note": t("note")}
+    issues = sorted(issues, key=lambda one: list(marks).index(one.severity))
+    # An error joins its reason and remedy as the language does.
+    words = [translated(InputError(one.reason, one.remedy)) for one in issues]
     return [
-        TableColumn(t("Row"), np.array([np.nan if one.row is None else one.row for one in issues], float), 0),
-        TableColumn(t("What"), np.array([marks.get(one.severity, t("note")) for one in issues], dtype=np.str_)),
+        TableColumn(t("Row"), np.array([one.row or np.nan for one in issues], float), 0),
+        TableColumn(t("What"), np.array([marks[one.severity] for one in issues], dtype=np.str_)),
         TableColumn(t("Value"), np.array([one.value for one in issues], dtype=np.str_)),
-        TableColumn(
-            t("Reason and remedy"),
-            np.array([f"{translated(one.reason)}. {translated(one.remedy)}" for one in issues], dtype=np.str_),
-        ),
+        TableColumn(t("Reason and remedy"), np.array(words, dtype=np.str_)),
     ]
 
 

@@ -57,7 +57,7 @@ def test_a_passage_without_any_wall_gets_the_mean_or_a_radius():
     shots = ShotList()
     shots.add("0", "1", np.array([5.0, 0, 0]), 0)
     adjusted = adjust_survey(shots.survey("bare"))
-    with pytest.raises(SurveyError, match=r"radius = \.\.\."):
+    with pytest.raises(SurveyError, match=r"wall distance \(in scripts: radius"):
         sections(adjusted)
     np.testing.assert_allclose(sections(adjusted, radius=1.5).walls, 1.5, atol=1e-6)
 

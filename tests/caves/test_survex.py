@@ -121,6 +121,51 @@ def test_what_is_not_read_is_listed(svx):
     assert (count.read, count.used, count.listed) == (4, 1, 3)
 
 
+@pytest.mark.parametrize(
+    ("line", "readings"),
+    [
+        ("*units tape furlongs", "tape"),
+        ("*units length furlongs", "tape"),
+        ("*units tape degrees", "tape"),
+        ("*units tape 0 feet", "tape"),
+        ("*units tape 2 3 feet", "tape"),
+        ("*units compass feet", "compass"),
+        ("*units compass percent", "compass"),
+        ("*units tpae feet", "tape"),
+        ("*units feet", "tape"),
+        ("*units", "tape"),
+    ],
+)
+def test_readings_in_an_unknown_unit_are_not_used(svx, line, readings):
+    """A tape in furlongs must not count as metres."""
+    found = svx(f"1 2 10 90 0\n{line}\n2 3 10 90 0\n*units tape metres\n*units compass degrees\n")
+    command, shot = found.issues
+    assert (command.severity, command.row, command.reason.code) == ("error", 2, "io.command-unreadable")
+    assert (shot.severity, shot.row, shot.reason.code) == ("error", 3, "io.reading-unit-unknown")
+    assert shot.reason.params["reading"] == readings
+    assert found.stations == ("1", "2")
+
+
+def test_a_unit_counts_again_once_it_is_known_or_its_block_ends(svx):
+    found = svx(
+        "*units tape furlongs\n*units tape feet\n1 2 10 90 0\n*begin\n*units tape furlongs\n2 3 10 90 0\n*end\n"
+        "2 4 10 90 0\n"
+    )
+    assert found.stations == ("1", "2", "4")
+    np.testing.assert_allclose(found.offset[:, 0], [3.048, 3.048])
+
+
+def test_units_of_walls_and_of_other_data(svx):
+    found = svx(
+        "*units dx dy dz feet\n*units left right furlongs\n1 2 10 90 0\n"
+        "*data passage station left right up down\n1 1 1 1 1\n2 - - 1 1\n"
+    )
+    assert [(issue.row, issue.reason.code) for issue in found.issues] == [
+        (2, "io.command-unreadable"), (5, "io.reading-unit-unknown")
+    ]  # fmt: skip
+    np.testing.assert_allclose(found.walls, [[np.nan, np.nan, 1, 1]])
+
+
 def test_included_files_keep_the_settings(svx, tmp_path):
     (tmp_path / "part.svx").write_text("2 3 10 90 0\n")
     found = svx("*calibrate tape 1\n1 2 10 90 0\n*include part\n")
@@ -175,7 +220,7 @@ def test_readings_that_no_instrument_shows_are_used_with_a_warning(svx, lines, c
     ["*fix 1 nan 0 0", "*declination inf degrees", "*calibrate tape nan", "*units tape inf metres"],
 )
 def test_settings_are_finite(svx, command):
-    (issue,) = svx(f"{command}\n1 2 1 0 0\n").issues
+    issue = svx(f"1 2 1 0 0\n{command}\n2 3 1 0 0\n").issues[0]
     assert (issue.severity, issue.reason.code) == ("error", "io.command-unreadable")
 
 
@@ -210,3 +255,22 @@ def test_an_end_names_its_own_block(svx):
 def test_blocks_must_match(svx, text):
     with pytest.raises(InputError, match="begin"):
         svx(text)
+
+
+@pytest.mark.parametrize(
+    ("line", "text"),
+    [
+        ("1 2 20000 90 0", "The shot is 20 000 m long; at most 10 000 m are allowed"),
+        ("1 2 10000.001 90 0", "The shot is 10 001 m long; at most 10 000 m are allowed"),
+        ("1 2 1e308 90 0", "The shot is 1e+308 m long; at most 10 000 m are allowed"),
+    ],
+)
+def test_lengths_in_messages_are_metres_in_groups(svx, line, text):
+    (issue,) = svx(f"{line}\n2 3 10 0 0\n").issues
+    assert str(issue.reason).replace("\N{NO-BREAK SPACE}", " ") == text
+
+
+@pytest.mark.parametrize(("wall", "text"), [("20000", "20 000 m"), ("-0.5", "−0.5 m"), ("-1e300", "−1e+300 m")])
+def test_walls_in_messages_are_metres_in_groups(svx, wall, text):
+    (issue,) = svx(f"1 2 10 0 0\n*data passage station left right up down\n1 {wall} 1 1 1\n2 1 1 1 1\n").issues
+    assert str(issue.reason).replace("\N{NO-BREAK SPACE}", " ") == f"A wall is {text} away; 0 to 10 000 m are possible"

@@ -13,8 +13,9 @@ from PySide6.QtGui import QDropEvent
 from geofit.data.errors import Cancelled
 from geofit.gui.dialogs.survey import SurveyDialog
 from geofit.gui.lengths import show_lengths_in
+from geofit.gui.translate import speak
 from geofit.project.cave_run import measure_passages, read_survey
-from geofit.project.cave_view import shot_states, wall_rings
+from geofit.project.cave_view import shot_states, view_files, wall_distance_counts, wall_rings, write_view
 
 #: Two squares, the first with a blunder of 4 m; the walls of d are missing.
 LOOPS = (
@@ -23,7 +24,14 @@ LOOPS = (
     "b e 10 90 0\ne f 10 0 0\nf c 10 270 0\n"
     "*data passage station left right up down\na 1 1 1 1\nb 1 1 1 1\nc 1 1 1 1\ne 1 1 1 1\nf 1 1 1 1\n*end loop\n"
 )
-TUBE = "x,y,z,radius\n3500000,500000,100,2\n3500020,500000,100,2\n"
+#: One shot without walls.
+LINE = "*fix a 0 0 0\n*data normal from to tape compass clino\na b 10 90 0\n"
+#: Three of its four shots cannot be used.
+REJECTED = (
+    "*fix a 0 0 0\n*data normal from to tape compass clino\na b 10 400 0\nb c 10 90 120\nc d ten 90 0\n"
+    "d e 20000 90 0\n*data passage station left right up down\na 1 1 1 1\nb 1 1 1 1\n"
+)
+TUBE = "x,y,z,radius\n500900,3100900,100,2\n500920,3100900,100,2\n"
 
 
 class Level:
@@ -82,6 +90,25 @@ def opened(qtbot, dialog, path):
     rests(qtbot, dialog)
 
 
+def read(qtbot, dialog, path):
+    """Open a file, whether or not it has a body."""
+    dialog.say("")
+    dialog.read(path)
+    qtbot.waitUntil(lambda: not dialog.running and dialog.message.text() != "", timeout=60_000)
+
+
+def make(qtbot, dialog, distance):
+    """Give a wall distance, and make the body."""
+    dialog.radius.setValue(distance)
+    qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
+    assert dialog.run is not None
+
+
+def listed_title(dialog):
+    return dialog.tabs.tabText(dialog.tabs.indexOf(dialog.tables["rows"]))
+
+
 def rows(table):
     model = table.model()
     return [
@@ -135,9 +162,9 @@ def feet():
 def test_the_window_in_feet(qtbot, feet, dialog, tmp_path, here):
     path = tmp_path / "line.svx"
     path.write_text("*begin line\n*fix a 0 0 100\n*data normal from to tape compass clino\na b 20 90 0\n*end line\n")
-    dialog.radius.setValue(3.28)
+    read(qtbot, dialog, path)
     assert dialog.radius.suffix() == " ft"
-    opened(qtbot, dialog, path)
+    make(qtbot, dialog, 3.28)
     walls = np.array([wall.distance for wall in dialog.run.body.sections.filled])
     np.testing.assert_allclose(walls, 3.28 * 0.3048)
     figures = dict(rows(dialog.tables["figures"]))
@@ -230,9 +257,9 @@ def test_files_and_report_are_those_of_the_command(qtbot, dialog, tube, tmp_path
 
 def test_a_survey_without_walls_gets_its_body_once_a_distance_is_given(qtbot, dialog, tmp_path, here):
     path = tmp_path / "line.svx"
-    path.write_text("*fix a 0 0 0\n*data normal from to tape compass clino\na b 10 90 0\n")
-    dialog.read(path)
-    qtbot.waitUntil(lambda: not dialog.running and "radius" in dialog.message.text().lower(), timeout=60_000)
+    path.write_text(LINE)
+    read(qtbot, dialog, path)
+    assert "wall distance" in dialog.message.text()
     assert dialog.run is None
     assert dialog.scene.shown == ("line", "stations")
     dialog.radius.setValue(1.0)
@@ -282,6 +309,200 @@ def test_every_stage_can_be_stopped(tube, stage):
     with pytest.raises(Cancelled):
         measure_passages(read_survey(tube), horizons={"T1": Level(100)}, progress=listen)
     assert seen == sorted(seen)
+
+
+@pytest.fixture
+def line(tmp_path):
+    path = tmp_path / "line.svx"
+    path.write_text(LINE)
+    return path
+
+
+@pytest.fixture
+def answers(monkeypatch):
+    """Refuse every question; return their texts."""
+    from PySide6.QtWidgets import QMessageBox
+
+    asked = []
+    monkeypatch.setattr(QMessageBox, "exec", lambda box: asked.append(box.text()) or QMessageBox.StandardButton.No)
+    return asked
+
+
+@pytest.mark.parametrize("report", [False, True])
+def test_files_of_others_are_not_replaced_unasked(qtbot, dialog, tube, tmp_path, here, answers, report):
+    opened(qtbot, dialog, tube)
+    theirs = tmp_path / ("tube_report.pdf" if report else "tube.json")
+    theirs.write_text("mine")
+    dialog.write(tmp_path, report=report)
+    qtbot.waitUntil(lambda: not dialog.running, timeout=60_000)
+    (question,) = answers
+    assert theirs.name in question
+    assert theirs.read_text() == "mine"
+
+
+@pytest.mark.parametrize("report", [False, True])
+def test_the_files_that_are_asked_about_are_those_that_are_written(loops, tmp_path, report):
+    run = measure_passages(read_survey(loops), horizons={"T1": Level(100)})
+    assert set(view_files(run, tmp_path, report)) == set(write_view(run, tmp_path, report).files)
+
+
+def test_a_body_with_another_wall_distance_is_out_of_date(qtbot, dialog, line, here):
+    read(qtbot, dialog, line)
+    make(qtbot, dialog, 1.0)
+    assert dialog.export.isEnabled()
+    dialog.radius.setValue(3.0)
+    assert not dialog.export.isEnabled()
+    assert not dialog.report.isEnabled()
+    assert "wall distance has changed" in dialog.message.text()
+    dialog.radius.setValue(1.0)
+    assert dialog.export.isEnabled(), "the field has again what the body is made with"
+    assert "wall distance has changed" not in dialog.message.text()
+    make(qtbot, dialog, 3.0)
+    assert dialog.report.isEnabled()
+    assert "wall distance has changed" not in dialog.message.text()
+
+
+def test_the_wall_distance_is_of_one_file(qtbot, dialog, line, tmp_path, here):
+    assert not dialog.radius.isEnabled(), "nothing is open"
+    read(qtbot, dialog, line)
+    assert dialog.radius.isEnabled()
+    make(qtbot, dialog, 3.0)
+    other = tmp_path / "other.svx"
+    other.write_text(LINE)
+    read(qtbot, dialog, other)
+    assert dialog.radius.value() == 0
+    assert dialog.run is None
+    assert "wall distance" in dialog.message.text()
+
+
+def test_a_survey_with_walls_takes_no_distance(qtbot, dialog, line, tube, here):
+    read(qtbot, dialog, line)
+    ready = dialog.radius.toolTip()
+    opened(qtbot, dialog, tube)
+    assert not dialog.radius.isEnabled()
+    assert dialog.radius.toolTip() != ready
+    read(qtbot, dialog, line)
+    assert dialog.radius.isEnabled()
+    assert dialog.radius.toolTip() == ready
+
+
+@pytest.mark.parametrize(
+    ("walls", "counts"),
+    [
+        ("", True),
+        ("a 1 1 - -\n", True),
+        ("a 1 1 0 0\n", True),
+        ("a 0 0 - -\nb - - 1 1\n", True),
+        ("a 1 - 0 1\n", False),
+    ],
+)
+def test_the_wall_distance_counts_where_sides_or_heights_lack(line, walls, counts):
+    line.write_text(LINE + "*data passage station left right up down\n" + walls)
+    survey = read_survey(line)
+    assert wall_distance_counts(survey) == counts
+    if walls:
+        near, far = (measure_passages(survey, radius=radius).volume.volume for radius in (0.5, 3.0))
+        assert (near != far) == counts
+
+
+def test_rows_that_are_not_used_are_a_warning(qtbot, dialog, tmp_path, here):
+    path = tmp_path / "rejected.svx"
+    path.write_text(REJECTED)
+    opened(qtbot, dialog, path)
+    assert "3 rows were not used" in dialog.message.text()
+    assert listed_title(dialog) == "Listed rows (4)"
+    dialog.write(tmp_path / "out")
+    qtbot.waitUntil(lambda: not dialog.running, timeout=60_000)
+    assert "Wrote" in dialog.message.text()
+    assert "3 rows were not used" in dialog.message.text()
+
+
+def test_a_refused_file_shows_its_own_rows(qtbot, dialog, tmp_path, tube, here):
+    path = tmp_path / "rejected.svx"
+    path.write_text(REJECTED)
+    opened(qtbot, dialog, path)
+    bad = tmp_path / "one & two.csv"
+    bad.write_text("x,y,z,radius\n0,0,0,2\nten,0,0,2\n")
+    read(qtbot, dialog, bad)
+    assert "See the listed rows" in dialog.message.text()
+    assert dialog.tabs.currentWidget() is dialog.tables["rows"]
+    assert listed_title(dialog) == f"Listed rows of one && two.csv ({len(rows(dialog.tables['rows']))})"
+    assert "ten" in {row[2] for row in rows(dialog.tables["rows"])}
+    assert "rejected.svx" in dialog.windowTitle()
+    read(qtbot, dialog, tmp_path / "missing.svx")
+    assert listed_title(dialog) == "Listed rows (4)", "those of the survey that is shown"
+
+
+def test_rows_that_disconnect_a_survey_are_shown(qtbot, dialog, tmp_path):
+    path = tmp_path / "two.svx"
+    path.write_text("*fix a 0 0 0\n*data normal from to tape compass clino\na b 10 90 0\nb c ten 90 0\nc d 10 90 0\n")
+    read(qtbot, dialog, path)
+    assert dialog.adjusted is None
+    assert [row[:2] for row in rows(dialog.tables["rows"])] == [["4", "not used"]]
+
+
+def test_findings_about_the_whole_file_have_no_row(qtbot, dialog, tube, here):
+    opened(qtbot, dialog, tube)
+    assert {row[0] for row in rows(dialog.tables["rows"])} <= {""}
+
+
+@pytest.fixture
+def chinese():
+    speak("zh_CN")
+    yield
+    speak("en")
+
+
+def test_listed_rows_in_chinese_are_chinese_sentences(qtbot, chinese, dialog, tmp_path, here):
+    path = tmp_path / "rejected.svx"
+    path.write_text(REJECTED)
+    opened(qtbot, dialog, path)
+    texts = [row[-1] for row in rows(dialog.tables["rows"])]
+    assert len(texts) == 4
+    for text in texts:
+        assert "compass 不" not in text.casefold()
+        assert "The " not in text
+        assert ". " not in text
+        assert text.endswith("。")
+
+
+def test_the_table_of_loops_fits(qtbot, dialog, loops, here):
+    opened(qtbot, dialog, loops)
+    table = dialog.tables["loops"]
+    dialog.tabs.setCurrentWidget(table)
+    qtbot.waitUntil(table.isVisible)
+    assert table.horizontalHeader().length() <= table.viewport().width()
+    header = table.horizontalHeader()
+    assert header.sectionSize(0) >= 100, "the names of a loop may be cut off, but not to nothing"
+    for column in range(1, header.count()):
+        assert max(table.sizeHintForColumn(column), header.sectionSizeHint(column)) <= header.sectionSize(column)
+
+
+def test_each_body_has_a_file_of_its_own(app, sample, line, here, answers):
+    app.window.files.open(sample / "site.toml")
+    app.idle()
+    before = set(app.document.state.bodies)
+    theirs = app.document.folder / "line_passages.ply"
+    theirs.write_text("mine")
+    app.window.surveys.open(line)
+    dialog = app.window.surveys.dialog
+    app.qtbot.waitUntil(lambda: not dialog.running and dialog.message.text() != "", timeout=60_000)
+    volumes = []
+    for distance in (1.0, 3.0):
+        make(app.qtbot, dialog, distance)
+        volumes.append(dialog.run.triangles.volume)
+        count = len(app.document.state.bodies)
+        app.qtbot.mouseClick(dialog.add, Qt.MouseButton.LeftButton)
+        app.qtbot.waitUntil(lambda count=count: len(app.document.state.bodies) == count + 1, timeout=120_000)
+        app.idle()
+    records = {name: record for name, record in app.document.state.bodies.items() if name not in before}
+    assert {record.provenance.source.file for record in records.values()} == {
+        "line_passages_2.ply", "line_passages_3.ply"
+    }  # fmt: skip
+    assert [app.document.body(name).mesh.volume for name in records] == pytest.approx(volumes, rel=1e-6)
+    assert theirs.read_text() == "mine"
+    assert answers == []
+    dialog.close()
 
 
 def test_a_dropped_survey_is_added_to_the_site_and_can_be_undone(app, sample, tube, here):
