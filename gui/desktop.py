@@ -105,6 +105,9 @@ class Desktop(QObject):
             self.window.tell(self.tr("Wait for the task to end, then choose the language."))
             self.window.check_language()
             return
+        if self._survey_open():
+            self.window.check_language()
+            return
         self.preferences.language = code
         apply_language(code)
         self.session.name_steps()
@@ -117,9 +120,20 @@ class Desktop(QObject):
         if self.window.busy:
             self.window.tell(self.tr("Wait for the task to end, then choose the unit."))
             return
+        if self._survey_open():
+            return
         self.preferences.lengths = cast("LengthUnit", unit)
         show_lengths_in(self.preferences.lengths)
         self._renew()
+
+    def _survey_open(self) -> bool:
+        """Tell of an open survey: its window, and what was made in it, would go with this one."""
+        dialog = self.window.surveys.dialog
+        if dialog is None:
+            return False
+        self.window.tell(self.tr("Close the survey first: its window and its body would be lost."))
+        dialog.raise_()
+        return True
 
     def _renew(self) -> None:
         old = self.window

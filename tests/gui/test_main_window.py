@@ -347,5 +347,10 @@ def test_another_language_waits_for_a_survey_and_the_menu_says_which_there_is(ap
     assert chosen() == ["en"]
     app.qtbot.waitUntil(lambda: not dialog.running, timeout=60_000)
     choose("zh_CN")
+    assert app.window.surveys.dialog is dialog
+    assert chosen() == ["en"]
+    assert "Close the survey" in app.window.statusBar().currentMessage()
+    dialog.close()
+    choose("zh_CN")
     assert chosen() == ["zh_CN"]
     choose("en")
