@@ -36,9 +36,15 @@ test: .venv/.installed-all
 	@bash tools/system_packages.sh missing || true
 	@$(MAKE) --keep-going $(PARTS)
 
-# Exit code 5: where no window can open, every test of them is skipped.
+# Exit code 5: where no window can open, every test of them is skipped. From 128 on a signal ended the process: Qt, VTK or
+# the OpenGL driver crashed, and the dump above says where. Once in dozens of runs that is a matter of chance; a crash
+# that comes again fails.
 test-windows: .venv/.installed-all
-	$(BIN)/python -m pytest $(WINDOWS) || [ $$? -eq 5 ]
+	$(BIN)/python -m pytest $(WINDOWS) || case $$? in \
+		5) ;; \
+		1[2-9][0-9]) echo "WARNING: the tests of the windows crashed; they run once more."; \
+			$(BIN)/python -m pytest $(WINDOWS) ;; \
+		*) exit 1 ;; esac
 
 test-volumes: .venv/.installed-all
 	$(BIN)/python -m pytest $(VOLUMES)
