@@ -84,7 +84,7 @@ def _near(field: Field, xyz: Floats, size: float) -> NDArray[np.bool_]:
 def _offset(field: Field, xyz: Floats) -> Floats:
     """Return how far (n,) places are from the surface, by the first order of the field."""
     value, slope = np.abs(field.value(xyz)), np.linalg.norm(field.gradient(xyz), axis=1)
-    return np.divide(value, slope, out=np.where(value > 0, np.inf, 0.0), where=slope > 0)
+    return np.asarray(np.divide(value, slope, out=np.where(value > 0, np.inf, 0.0), where=slope > 0))
 
 
 def _nearest(wall: TriangleMesh, xyz: Floats, size: float) -> Floats:

@@ -252,7 +252,8 @@ def _by_piece(
     whole = [piece for piece in _pieces(area, _plane(xyz[mine]), faults, sides) if piece.area > SLIVER * area.area]
     if len(whole) < 2:
         return [mine], []
-    away = shapely.distance(shapely.points(xyz[mine, :2])[:, None], np.array(whole, dtype=object))
+    places = np.asarray(shapely.points(xyz[mine, :2]))
+    away = shapely.distance(places[:, None], np.array(whole, dtype=object))
     count = np.bincount(away.argmin(axis=1), minlength=len(whole))
     notes = [
         message(

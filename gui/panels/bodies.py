@@ -44,7 +44,8 @@ FIRST = ("epsilon", "step", "closed", "reach")
 class BodyShown:
     """What the panel shows of one body: what it is made from, its verdict, and what is to be said of it.
 
-    ``old`` is why it is to be fitted again, empty if it is not; ``origin`` how it came here; ``warnings`` limit its use.
+    ``old`` is why it is to be fitted again, empty if it is not; ``origin`` how it came here; ``warnings`` what limits
+    its use.
     """
 
     def __init__(
