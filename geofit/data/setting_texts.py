@@ -78,7 +78,7 @@ SETTINGS: Mapping[str, SettingText] = {
         message(
             "data.setting-core-about",
             "The region whose points the surface interpolates exactly. Automatic: where the points are dense. All: "
-            "every point. None: all points are approximated. Drawn: the rectangle around a polygon.",
+            "every point. None: all points are approximated, except on folds. Drawn: the rectangle around a polygon.",
         ),
         choices={
             "auto": _AUTO,

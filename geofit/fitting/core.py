@@ -43,7 +43,14 @@ from geofit.fitting.net import Net
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.periphery import Periphery
 from geofit.fitting.resolution import CLOSE, Choice, choose_field, longest_span
-from geofit.fitting.skin import lofted, minimum_norm_correction, refine_knots, ruled, section_lines
+from geofit.fitting.skin import (
+    curve_lines,
+    lofted,
+    minimum_norm_correction,
+    refine_knots,
+    ruled,
+    section_lines,
+)
 from geofit.fitting.split import Split
 from geofit.splines import bspline
 from geofit.splines.refined import RefinedSpace, outer_of
@@ -106,8 +113,12 @@ def fit_with_core(
     degree, most = degree_for(len(data.plane)), cap_for(settings, len(data.plane), A_POINT)
     stage("field", 0.25)
     field, coarse = choose_field(data, settings, most, sketched) if chosen is None else chosen
-    lines = section_lines(data.plane[inside], parametrization.section[kept][inside], 0.5 * (core[1] - core[0]))
     between = ~parametrization.parametrized[kept]
+    if parametrization.parametric:
+        lines = curve_lines(data.plane[~between, 0])
+        between |= ~np.isin(data.plane[:, 0], lines.u)
+    else:
+        lines = section_lines(data.plane[inside], parametrization.section[kept][inside], 0.5 * (core[1] - core[0]))
     given = Core(data, core, inside, between, field, coarse, lines, parametrization.parametric, settings, None)
     relief = relief_of_core(data, core, inside, field, settings, most, lambda: _near_noise(given))
     if relief is not None and not relief.field.contradictory:

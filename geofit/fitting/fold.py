@@ -24,6 +24,10 @@ Floats = NDArray[np.float64]
 ORDERED = 0.95
 #: How far a line must run back, as a share of its extent, for a turning point to be a hinge.
 PROMINENT = 0.05
+#: A curve that runs back by more than this share of its length shows the fold.
+FOLDED = 0.02
+#: Sines of the angles, 10 and 45 degrees, beyond which a section crosses another one, and runs along the fold.
+CROSSING, ALONG = 0.17, 0.71
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +76,8 @@ def loft(points: PointSet) -> Loft:
     sections, and corrects their places as it changes (J. Hoschek, CAGD 5, 1988, 27-31).
     """
     curves = _curves(points)
+    ties = _ties(points, curves)
+    curves = {name: index for name, index in curves.items() if name not in ties}
     plane = np.zeros((len(points), 2))
     if len(curves) < 2:
         return Loft(plane, np.zeros(len(points), bool), np.zeros(len(curves)), ())
@@ -92,20 +98,91 @@ def loft(points: PointSet) -> Loft:
         length=float(u[-1] - u[0]),
         count=int((~on_line).sum()),
     )
-    return Loft(plane, on_line, u, (note,))
+    if not ties:
+        return Loft(plane, on_line, u, (note,))
+    crossing = message(
+        "fitting.sections-cross-others",
+        "sections that cross the others in plan are not used as section curves; their points count as points between "
+        "the curves: {names}",
+        names=ties,
+    )
+    return Loft(plane, on_line, u, (note, crossing))
+
+
+def _ties(points: PointSet, curves: dict[str, NDArray[np.int64]]) -> tuple[str, ...]:
+    """Return the names of the sections that tie the others together, instead of showing the fold.
+
+    Their lines in plan cross a section that is nearer to the common direction of those that run back. A line that does
+    not run back itself may end before the section that it would cross at a large angle: it runs along the fold.
+    """
+    if len(curves) < 3:
+        return ()
+    names = list(curves)
+    lines = [_line_in_plan(points.xyz[index]) for index in curves.values()]
+    folded = np.array([_runs_back(points.xyz[index]) for index in curves.values()])
+    common = _common_direction(
+        [direction for k, (_, direction, _) in enumerate(lines) if folded[k] or not folded.any()]
+    )
+    off = [abs(_cross(direction, common)) for _, direction, _ in lines]
+    kept: list[int] = []
+    for k in np.argsort(off, kind="stable").tolist():
+        alone = bool(folded.any() and not folded[k])
+        if not any(off[k] > off[j] and _crosses(lines[k], lines[j], alone) for j in kept):
+            kept.append(k)
+    return tuple(name for k, name in enumerate(names) if k not in kept) if len(kept) >= 2 else ()
+
+
+def _line_in_plan(xyz: Floats) -> tuple[Floats, Floats, float]:
+    """Return the middle of a section in plan, its direction there, and half of its length."""
+    direction = _direction(xyz)
+    along = xyz[:, :2] @ direction
+    middle = xyz[:, :2].mean(axis=0)
+    low, high = along.min(), along.max()
+    return middle + ((low + high) / 2 - middle @ direction) * direction, direction, float(high - low) / 2
+
+
+def _runs_back(xyz: Floats) -> bool:
+    steps = np.diff(xyz[:, :2] @ _direction(xyz))
+    forward, backward = steps[steps > 0].sum(), -steps[steps < 0].sum()
+    return bool(min(forward, backward) > FOLDED * _chords(xyz)[-1])
+
+
+def _crosses(one: tuple[Floats, Floats, float], other: tuple[Floats, Floats, float], extended: bool) -> bool:
+    """Whether one line in plan crosses another; of one that is ``extended``, whether it would at a large angle."""
+    (middle, direction, half), (middle_b, direction_b, half_b) = one, other
+    sine = _cross(direction, direction_b)
+    if abs(sine) <= CROSSING:
+        return False
+    at, at_b = _cross(middle_b - middle, direction_b) / sine, _cross(middle_b - middle, direction) / sine
+    return abs(at_b) <= half_b and (abs(at) <= half or (extended and abs(sine) > ALONG))
+
+
+def _cross(a: Floats, b: Floats) -> float:
+    return float(a[0] * b[1] - a[1] * b[0])
 
 
 def _offsets(points: PointSet, curves: dict[str, NDArray[np.int64]]) -> Floats:
     """Return the distance of each section along the common normal of their lines in plan."""
-    doubled = 0j
-    for index in curves.values():
-        centred = points.xyz[index, :2] - points.xyz[index, :2].mean(axis=0)
-        direction = np.linalg.svd(centred, full_matrices=False)[2][0]
-        doubled += np.exp(2j * np.arctan2(direction[1], direction[0]))
-    angle = np.angle(doubled) / 2
-    normal = np.array([np.sin(angle), -np.cos(angle)])
+    direction = _common_direction([_direction(points.xyz[index]) for index in curves.values()])
+    normal = np.array([direction[1], -direction[0]])
     centre = points.xyz[:, :2].mean(axis=0)
     return np.array([((points.xyz[index, :2] - centre) @ normal).mean() for index in curves.values()])
+
+
+def _direction(xyz: Floats) -> Floats:
+    """Return the principal direction of places in plan."""
+    centred = xyz[:, :2] - xyz[:, :2].mean(axis=0)
+    direction: Floats = np.linalg.svd(centred, full_matrices=False)[2][0]
+    return direction
+
+
+def _common_direction(directions: list[Floats]) -> Floats:
+    """Return the mean of directions, whichever way each points."""
+    doubled = 0j
+    for direction in directions:
+        doubled += np.exp(2j * np.arctan2(direction[1], direction[0]))
+    angle = np.angle(doubled) / 2
+    return np.array([np.cos(angle), np.sin(angle)])
 
 
 def _chords(xyz: Floats) -> Floats:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from geofit.data.errors import FitError
 from geofit.data.long_arrays import covariance
@@ -20,7 +21,7 @@ from geofit.fitting.fold import Loft, backtracking, loft
 from geofit.fitting.sections import section_labels
 from geofit.geometry.frame import Frame, best_plane_frame, map_frame, section_azimuth
 
-__all__ = ["STEEP", "Parametrization", "direction_of", "parametrize", "plan_box"]
+__all__ = ["STEEP", "Parametrization", "direction_of", "parametrize", "plan_box", "turns_over"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -37,6 +38,17 @@ OVERTURNED = 0.02
 ROW = 0.2
 #: Ratio of F by which heights must follow the places across a row before they show a dip there.
 SHOWN = 16.0
+
+
+#: Share of the points at which a surface must turn over to be no height field over the map, and the cosine of its dip
+#: there, 93 degrees.
+TURNED, PAST_VERTICAL = 0.05, -0.05
+#: Neighbours of a point that show the slope there, the share of it up the dip that they must resolve, and by how many
+#: times its error it must be beyond that of a vertical surface; at most so many points are looked at.
+NEIGHBOURS, RESOLVED, CERTAIN, LOOKED_AT = 8, 0.95, 3.0, 5000
+#: Slope over the best plane that at least this share of the points must not exceed: what is folded back over the plane
+#: looks turned over, and is steep there in between.
+GENTLE, FACING = 1.0, 0.95
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,6 +173,12 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
                 share=100 * over_map,
             ),
         )
+    if over_map <= OVERTURNED and dip >= STEEP and over_plane <= OVERTURNED and turns_over(points, plane):
+        return "best-plane", message(
+            "fitting.frame-best-plane-turning-over",
+            "height field over its best plane, which dips {dip:.0f}°: parts of the surface are steeper than vertical",
+            dip=dip,
+        )
     if over_map <= OVERTURNED:
         return "map", message(
             "fitting.frame-map-despite-dip",
@@ -192,6 +210,30 @@ def _dip(points: PointSet, plane: Frame) -> float:
         steep = np.linalg.svd(np.column_stack([along, xyz[:, 2]]), full_matrices=False)[2][0]
         return float(np.degrees(np.arctan2(abs(steep[1]), abs(steep[0]))))
     return float(np.degrees(np.arccos(np.clip(plane.axes[2, 2], -1, 1))))
+
+
+def turns_over(points: PointSet, plane: Frame) -> bool:
+    """Return whether points lie on a height field over their best plane that is steeper than vertical in places.
+
+    What a surface rises up the dip of the plane decides: the strike is level. It is that of a plane through the
+    neighbours of a point, where they are not in a row along the strike and lie near enough to that plane. Over a height
+    field over the map no such plane turns over; nor do those through points scattered in a volume.
+    """
+    local = plane.to_local(points.xyz)
+    if len(local) <= NEIGHBOURS:
+        return False
+    at = local[:: -(-len(local) // LOOKED_AT)]
+    around = local[KDTree(local[:, :2]).query(at[:, :2], k=NEIGHBOURS + 1)[1]]
+    around = around - around.mean(axis=1, keepdims=True)
+    places, heights = around[:, :, :2], around[:, :, 2]
+    inverse = np.linalg.pinv(places, rcond=0.1)
+    slope = (inverse @ heights[:, :, None])[:, :, 0]
+    scatter = np.linalg.norm(heights - (places @ slope[:, :, None])[:, :, 0], axis=1) / np.sqrt(NEIGHBOURS - 2)
+    rise = slope[:, 1] - CERTAIN * scatter * np.linalg.norm(inverse[:, 1], axis=1)
+    upward = (plane.axes[2, 2] - rise * plane.axes[1, 2]) / np.sqrt(1 + slope[:, 0] ** 2 + rise**2)
+    resolved = (inverse @ places)[:, 1, 1] > RESOLVED
+    gentle = np.mean(np.hypot(*slope.T) > GENTLE) <= 1 - FACING
+    return bool(gentle and np.mean(resolved & (upward < PAST_VERTICAL)) >= TURNED)
 
 
 def _upright(points: PointSet) -> bool:

@@ -22,11 +22,14 @@ def partition(parametrization: Parametrization, settings: FitSettings, kept: NDA
         return split_none(parametrization.plane, note)
     plane = parametrization.plane if kept.all() else parametrization.plane[kept]
     if parametrization.parametric:
-        found = split_all(
-            plane,
-            parametrization.area,
-            message("fitting.sections-span-surface", "the section curves span the whole surface"),
-        )
+        reason = message("fitting.sections-span-surface", "the section curves span the whole surface")
+        if settings.core == "none":
+            reason = message(
+                "fitting.fold-always-met",
+                "core='none' does not apply to folded surfaces: the section curves are met exactly where control "
+                "points allow, with their noise",
+            ).with_severity("warning")
+        found = split_all(plane, parametrization.area, reason)
     elif settings.core == "all":
         found = split_all(
             plane,

@@ -12,6 +12,7 @@ from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import binary_dilation
 from scipy.spatial import KDTree
 
 from geofit.data.allowance import allowance, any_coarse, largest_noise
@@ -55,6 +56,9 @@ BLUNDER = 8.0
 BENT = 3.0
 #: Where points scatter by this share of their noise about the field, they are so many that it shows.
 SHOWN = 0.8
+#: Points this near to the core, in units, show whether the surface breaks at its edge. They are left out in so many
+#: parts; what a surface with a break misses them by must stay below this share of what one without misses.
+BESIDE, LEFT_OUT, PAID = 1.0, 5, 0.8
 #: Places whose rows are held at a time.
 PART = 50_000
 
@@ -109,8 +113,8 @@ class Periphery:
     """The points to approximate, next to the core that lends its control points.
 
     The regional field's fit stands already, and its core's edge is the patch's edge. ``refit`` solves for it anew
-    where a break is allowed at the seams. ``held`` (k,) marks the finer functions that act on the core's points; the
-    others may move for other points in its patch.
+    where a break is allowed at the seams and the points show one. ``held`` (k,) marks the finer functions that act on
+    the core's points; the others may move for other points in its patch.
     """
 
     data: Data
@@ -125,8 +129,8 @@ class Periphery:
     def fit(self, space: Space, start: Smoothed) -> PeripheryFit:
         """Approximate, and add knots where points stay outside the tolerance, as far as the cap allows."""
         base, coefficients = space, start.coefficients
-        if self.refit and isinstance(space, TensorSpace):
-            coefficients = self._refitted(space, start)
+        if self.refit and self.core is not None and isinstance(space, TensorSpace):
+            coefficients = self._refitted(space, start, self.core)
         if not self._chased and self.outer.all():
             return self._unchanged(space, coefficients)
         misfit = _misfit(space, coefficients, self.data.plane[:][self.outer], self.data.value[:][self.outer])
@@ -219,16 +223,41 @@ class Periphery:
             return np.zeros(space.size, bool)
         return np.concatenate([fixed_by_core(outer_of(space), self.core).ravel(), self.held])
 
-    def _refitted(self, space: TensorSpace, start: Smoothed) -> Floats:
-        """Solve for the control points next to the core again, in a space that may break at its edge."""
+    def _refitted(self, space: TensorSpace, start: Smoothed, core: Rectangle) -> Floats:
+        """Solve for the control points next to the core again, in a space that may break at its edge.
+
+        The start stays unless the points pay for a break: those next to the core, left out in turn, must be predicted
+        better with it than with the core's tangent planes.
+        """
         data, over = self.data, plane_coefficients(space) @ start.plane
         plane = data.plane[:][self.outer]
         rest = data.value[:][self.outer] - np.column_stack([np.ones(len(plane)), plane]) @ start.plane
-        frozen = self._frozen(space)
         weight = 1 / data.noise[self.outer] ** 2
+        beyond = np.maximum(np.maximum(np.array(core[::2]) - plane, plane - np.array(core[1::2])), 0.0)
+        near = np.linalg.norm(beyond, axis=1) < BESIDE
+        if near.sum() < LEFT_OUT:
+            return start.coefficients
         # The spans next to a core are of any length, which a form applied twice does not bear.
         energy = precision_band(space, self.field.at_most(space.degree))
-        return over + solved_beside(space, energy, start.coefficients - over, frozen, plane, rest, weight)
+
+        def solved(frozen: NDArray[np.bool_], used: NDArray[np.bool_]) -> Floats:
+            return solved_beside(
+                space, energy, start.coefficients - over, frozen, plane[used], rest[used], weight[used]
+            )
+
+        def missed(frozen: NDArray[np.bool_]) -> float:
+            total, part = 0.0, np.arange(len(plane)) % LEFT_OUT
+            for k in range(LEFT_OUT):
+                left = near & (part == k)
+                off = rest[left] - space.matrix(plane[left]) @ solved(frozen, part != k)
+                total += float(weight[left] @ _size(off) ** 2)
+            return total
+
+        position = self._frozen(space)
+        tangent = binary_dilation(position.reshape(space.shape), np.ones((3, 3), bool)).ravel()
+        if missed(position) >= PAID * missed(tangent):
+            return start.coefficients
+        return over + solved(position, np.ones(len(plane), bool))
 
     @cached_property
     def _coarse(self) -> bool:

@@ -30,6 +30,7 @@ from geofit.splines.tensor import TensorSpace
 
 __all__ = [
     "Lines",
+    "curve_lines",
     "lofted",
     "minimum_norm_correction",
     "refine_knots",
@@ -52,6 +53,8 @@ EXACT = 1e-8
 OFFSETS = ((0.0,), (-1.0, 1.0), (-2.5, 2.5))
 #: Two neighbours contradict each other if they ask for a slope this far above the field's own: no relief is so steep.
 STEEP = 10.0
+#: Curves of a fold nearer than this share of their whole distance, and of their mean distance, make one line.
+ALMOST_ONE, ALMOST_ONE_OF_MANY = 0.025, 0.15
 #: Damping of changes that may leave a misfit, relative to what a point's own control points weigh.
 DAMPING = 0.01
 
@@ -100,6 +103,22 @@ def section_lines(plane: Floats, section: NDArray[np.str_], spacing: float) -> L
     least = min(0.05 * spacing, max(0.5 * float(lines[-1] - lines[0]) / (len(lines) - 1), 1e-4 * spacing))
     keep = np.concatenate([[True], np.diff(lines) > least])
     return Lines(lines[keep], stray[keep], int(keep.sum()) >= 2)
+
+
+def curve_lines(u: Floats) -> Lines:
+    """Return the lines of a fold's section curves, whose points have the given ``u``.
+
+    Of curves much closer together than most, one is a line: a surface lofted through both would carry the slope from
+    one to the other, and with it what their points differ by, as far as the next curve.
+    """
+    found = np.unique(u)
+    length = float(np.ptp(found)) if len(found) else 0.0
+    least = min(ALMOST_ONE, ALMOST_ONE_OF_MANY / max(len(found) - 1, 1)) * length
+    lines: list[float] = []
+    for line in found.tolist():
+        if not lines or line - lines[-1] > least:
+            lines.append(line)
+    return Lines(np.array(lines), np.zeros(len(lines)), len(lines) >= 2)
 
 
 def minimum_norm_correction(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_] | None = None) -> Floats:

@@ -48,7 +48,8 @@ def solve(problem: Problem, stage: Stages, sketched: Sequence[FieldChoice] = ())
     try:
         model = problem.fit(placed, stage, sketched=sketched)
     except ExactnessError as error:
-        if settings.core != "auto":
+        # A fold has a core even if none is asked for.
+        if settings.core not in ("auto", "none"):
             raise
         model = _without_core(problem, error).fit(placed, stage)
     if not parametrization.parametrized.all():
@@ -68,7 +69,9 @@ def _without_core(problem: Problem, error: ExactnessError) -> Problem:
         error=error.message,
     )
     nowhere = np.zeros(len(problem.points), bool)
-    return replace(problem, split=Split(None, nowhere, reason.with_severity("warning"), lost=True))
+    return replace(
+        problem, split=Split(None, nowhere, reason.with_severity("warning"), lost=problem.settings.core == "auto")
+    )
 
 
 def _corrected(model: Model, stage: Stages, sketched: Sequence[FieldChoice]) -> Model:

@@ -2,11 +2,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from refusals import with_code
 from scipy.signal import find_peaks
 from truth import EASTING, NORTHING, fold_at, folded, paper_arrangement
 
-from geofit import PointSet
+from geofit import PointSet, fit_horizon
 from geofit.fitting.fold import backtracking, loft, turning_points
+from geofit.fitting.skin import curve_lines
 from geofit.geometry.frame import map_frame
 
 
@@ -115,3 +117,77 @@ def test_turning_points_are_the_peaks_and_pits_of_that_prominence(seed):
     least = rng.uniform(0.01, 0.6) * np.ptp(line)
     turns = [find_peaks(sign * line, prominence=least)[0] for sign in (1, -1)] if n > 2 else [[]]
     assert turning_points(line, least) == sorted(np.concatenate(turns).tolist())
+
+
+def arch_at(t, y):
+    """Places on a cylinder of 100 m radius, 230 degrees of it, that plunges gently; t in 0..1 along a section."""
+    angle = np.radians(230 * t - 115)
+    return np.column_stack([100 * np.sin(angle), y, 100 * np.cos(angle) + 0.15 * y])
+
+
+def arch(offsets, n=30, noise=0.0, seed=1):
+    rng = np.random.default_rng(seed)
+    xyz = []
+    for y in offsets:
+        t = np.sort(np.concatenate([[0, 1], rng.uniform(0, 1, n - 2)]))
+        xyz.append(arch_at(t, np.full(n, float(y))) + rng.normal(0, 1, (n, 3)) * (noise, 0, noise))
+    return PointSet(np.concatenate(xyz), section=np.repeat([f"S{k}" for k in range(len(offsets))], n), kind="section")
+
+
+def error_of(surface, inside=(0.05, 0.95)):
+    """Largest distance of the surface from places of the arch between its sections."""
+    rng = np.random.default_rng(9)
+    return np.abs(surface.distance(arch_at(rng.uniform(*inside, 500), rng.uniform(5, 495, 500)))).max()
+
+
+@pytest.mark.parametrize("close", [500.5, 490.0, 410.0, 50.03])
+def test_a_section_close_to_another_leaves_the_core_of_a_fold_exact(close):
+    points = arch(sorted([0, 50, 100, 400, 450, 500, close]))
+    surface = fit_horizon(points)
+    assert surface.core.all()
+    assert np.abs(surface.distance(points.xyz)).max() < 1e-6
+    assert error_of(surface) < 0.5
+
+
+@pytest.mark.parametrize("gap", [0.05, 2.0, 8.0])
+def test_noise_of_close_sections_is_not_carried_to_the_next_ones(gap):
+    apart, pair = (
+        fit_horizon(arch(y, noise=0.05)) for y in ([0, 100, 250, 400, 500], [0, 100, 250, 250 + gap, 400, 500])
+    )
+    assert error_of(pair) < 2 * error_of(apart)
+
+
+def test_curves_at_one_place_are_one_line_and_others_are_all_lines():
+    assert curve_lines(np.repeat([0.0, 50.0, 50.01, 100.0], 5)).u.tolist() == [0, 50, 100]
+    assert curve_lines(np.arange(100.0)).u.tolist() == list(range(100))
+    assert not curve_lines(np.zeros(5)).straight
+
+
+@pytest.mark.parametrize(
+    ("y", "t"), [((0, 500), (0.2, 0.2)), ((0, 500), (0.2, 0.8)), ((200, 300), (0.45, 0.55)), ((215, 285), (0.6, 0.6))]
+)
+def test_a_section_along_a_fold_does_not_tear_it(y, t):
+    tie = PointSet(arch_at(np.linspace(*t, 20), np.linspace(*y, 20)), section="TIE", kind="section")
+    points = PointSet.concatenate([arch(np.linspace(0, 500, 8)), tie])
+    surface = fit_horizon(points)
+    assert with_code(surface.accuracy.notes, "fitting.sections-cross-others").params["names"] == ("TIE",)
+    assert np.abs(surface.distance(points.xyz)).max() < 1e-6
+    assert error_of(surface) < 0.5
+
+
+def test_sections_in_a_fan_or_turned_a_little_are_section_curves():
+    for angles in (np.linspace(-60, 60, 9), np.array([0, 8, -8, 5, 0])):
+        lines = []
+        for k, angle in enumerate(np.radians(angles)):
+            x, _, z = fold_at(np.linspace(0, 1, 40), np.zeros(40)).T
+            across, along = (x + 600, 0 * x) if len(angles) == 9 else (x, np.full(40, 60.0 * k))
+            lines.append(np.column_stack([across * np.cos(angle), along + across * np.sin(angle), z]))
+        surface = loft(PointSet(np.concatenate(lines), section=np.repeat([f"S{k}" for k in range(len(angles))], 40)))
+        assert surface.on_line.all()
+        assert len(surface.u) == len(angles)
+
+
+def test_as_many_ties_as_sections_leave_the_sections():
+    ties = [PointSet(arch_at(np.full(20, t), np.linspace(0, 500, 20)), section=f"T{t}") for t in (0.2, 0.5, 0.7)]
+    surface = loft(PointSet.concatenate([*ties, arch([0, 250, 500])]))
+    assert surface.on_line.tolist() == [False] * 60 + [True] * 90

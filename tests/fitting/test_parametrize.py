@@ -7,7 +7,7 @@ from truth import EASTING, NORTHING, fold_at, folded, hills, paper_arrangement, 
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.errors import FitError
-from geofit.fitting.parametrize import parametrize
+from geofit.fitting.parametrize import parametrize, turns_over
 from geofit.geometry.frame import best_plane_frame
 
 SETTINGS = FitSettings()
@@ -217,3 +217,37 @@ def test_a_cloud_that_is_no_plane_is_laid_over_the_map():
     assert parametrization.frame.kind == "map"
     assert "fitting.frame-map-despite-dip" in {note.code for note in parametrization.notes}
     assert np.isfinite(fit_horizon(points).elevation(*points.xyz[:, :2].T)).all()
+
+
+def twisted(first, last, missing=None):
+    """A steep surface on eight sections, whose dip changes along its strike of 500 m to the other side of upright."""
+    a = np.repeat(np.linspace(0, 500, 8), 25)
+    d = np.tile(np.linspace(-110, 110, 25), 8)
+    dip = np.radians(first + (last - first) * a / 500)
+    xyz = np.column_stack([d * np.cos(dip) + 5 * np.sin(a / 60), a, d * np.sin(dip)])
+    xyz[:, [0, 2]] += np.random.default_rng(5).normal(0, 0.05, (200, 2))
+    points = PointSet(xyz + np.array((EASTING, NORTHING, 700)), section=np.repeat([f"S{k}" for k in range(8)], 25))
+    return points if missing is None else points[points.section != missing]
+
+
+@pytest.mark.parametrize("dips", [(60, 120), (60, 100), (65, 115), (60, 95)])
+def test_a_twisted_surface_that_passes_upright_is_fitted_over_its_best_plane(dips):
+    for missing in (None, "S0", "S3", "S7"):
+        assert parametrize(twisted(*dips, missing), SETTINGS, None).frame.kind == "best-plane"
+
+
+def test_a_twisted_surface_is_met():
+    points = twisted(60, 120)
+    surface = fit_horizon(points)
+    assert with_code(surface.accuracy.notes, "fitting.frame-best-plane-turning-over")
+    assert rms(surface.distance(points.xyz)) < 0.06
+
+
+def test_a_steep_height_field_that_is_no_plane_stays_one_over_the_map():
+    """Relief that is folded back over its best plane looks overturned there, and is not."""
+    rng = np.random.default_rng(0)
+    for wave in (60, 100, 160):
+        plan = rng.uniform(0, 400, (250, 2))
+        z = np.tan(np.radians(60)) * plan[:, 0] + 1.6 * wave * np.sin(plan[:, 0] / wave)
+        points = PointSet(np.column_stack([plan + np.array((EASTING, NORTHING)), z]))
+        assert not turns_over(points, best_plane_frame(points))

@@ -2,8 +2,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from truth import paper_arrangement
+from truth import folded, paper_arrangement
 
+from geofit import FitSettings, fit_horizon
 from geofit.data.messages import message
 from geofit.fitting.density import split_auto
 from geofit.fitting.split import split_all, split_none, split_rectangle
@@ -192,3 +193,17 @@ def test_sections_of_unequal_distances_make_one_core():
     split = split_auto(plane, AREA, drawn)
     assert split.core is not None
     np.testing.assert_array_equal(split.inside, drawn)
+
+
+@pytest.mark.parametrize("extra", [{}, {"max_control_points": 16}])
+def test_a_fold_without_a_core_is_met_where_it_can_be_and_says_so(extra):
+    """With sixteen control points no surface passes through the curves: then all points are approximated, as asked."""
+    surface = fit_horizon(folded(seed=2), FitSettings(core="none", **extra))
+    reason = surface.partition.reason
+    if extra:
+        assert not surface.core.any()
+        reason = reason.params["reason"]
+    else:
+        assert surface.core.all()
+    assert reason.code == "fitting.fold-always-met"
+    assert surface.partition.reason.severity == "warning"

@@ -125,3 +125,38 @@ def test_only_the_check_counts_the_points_that_noise_puts_beyond_the_tolerance()
     (check,) = (one for one in accuracy.checks if one.name == "interior tolerance")
     assert check.passed
     assert check.text.params["count"] == (np.abs(accuracy.residuals) > 0.1).sum() > 0
+
+
+def around_a_core(slope, seed=1):
+    """Return the errors with either seam: nine sections, sparse points, and ground that turns by ``slope`` between."""
+    rng = np.random.default_rng(seed)
+
+    def ground(x, y):
+        bent = slope * (np.maximum(0, x - 1320) + np.maximum(0, 680 - x))
+        return 30 * np.sin(x / 180) + 20 * np.cos(y / 150) + 0.12 * x + bent
+
+    plan = [np.column_stack([np.full(25, 685 + 78.75 * k), np.sort(rng.uniform(600, 1400, 25))]) for k in range(9)]
+    around = rng.uniform(0, SIDE, (110, 2))
+    around = around[(np.abs(around - 1000) > (320, 420)).any(axis=1)]
+    plan = np.concatenate([*plan, around])
+    section = np.append(np.repeat([f"S{k}" for k in range(9)], 25), np.full(len(around), ""))
+    points = PointSet(np.column_stack([plan + CORNER, ground(*plan.T)]), section=section)
+    core = np.array([[680, 580], [1320, 580], [1320, 1420], [680, 1420]]) + CORNER
+    places = rng.uniform(150, SIDE - 150, (2000, 2))
+    found = {}
+    for seam in ("tangent", "position"):
+        settings = FitSettings(seam=seam, core=tuple(map(tuple, core.tolist())))
+        surface = fit_horizon(points, settings, np.array([[0, 0], [SIDE, 0], [SIDE, SIDE], [0, SIDE]]) + CORNER)
+        off = surface.elevation(*(places + CORNER).T) - ground(*places.T)
+        found[seam] = float(np.sqrt(np.mean(off**2)))
+    return found
+
+
+def test_a_break_that_is_allowed_makes_a_smooth_horizon_no_worse():
+    error = around_a_core(0.0)
+    assert error["position"] < 1.1 * error["tangent"]
+
+
+def test_the_surface_breaks_at_the_core_where_the_points_show_it():
+    error = around_a_core(0.5)
+    assert error["position"] < 0.7 * error["tangent"]
