@@ -172,8 +172,10 @@ def _origin(path: Path) -> Floats:
     beside = path.with_name(path.name + ".origin.txt")
     if not beside.is_file():
         return np.zeros(3)
-    found = dict(re.findall(r"^(easting|northing|elevation) (\S+)$", beside.read_text(encoding="utf-8"), re.MULTILINE))
-    return np.array([float(found.get(axis, 0.0)) for axis in ("easting", "northing", "elevation")])
+    # A sample has the axes of its array in place of those of the map.
+    axes = r"^(?:easting|northing|elevation|axis[012]) (\S+)$"
+    found = re.findall(axes, beside.read_text(encoding="utf-8"), re.MULTILINE)
+    return np.array([float(place) for place in found]) if len(found) == 3 else np.zeros(3)
 
 
 def _damaged(source: Source, kind: str, row: int | None = None) -> InputError:

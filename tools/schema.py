@@ -133,6 +133,7 @@ def schema() -> dict[str, Any]:
         "maximal_balls": {"type": ["integer", "null"]},
         **{key: {"type": "integer"} for key in ("pores", "throats", "dropped_pores")},
         "network_permeability": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 3, "maxItems": 3},
+        "messages": {"type": "array", "items": {"$ref": "#/$defs/Message"}},
         "mean_coordination": {"type": "number"},
         "percolates": {"type": "array", "items": {"type": "boolean"}},
         "settings": {"type": "object"},

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections import defaultdict
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,6 +30,8 @@ Bools = NDArray[np.bool_]
 
 #: Limits that the file must keep: metres, metres, degrees, metres.
 CORE, GAP, ANGLE, EDGE = 1e-6, 1e-6, 0.1, 1e-6
+#: How far sigma measured in the file may be from the one that it states: metres, and share of it.
+SIGMA, DIGITS = 1e-6, 1e-5
 #: Places along every seam.
 SAMPLES = 200
 #: OpenCASCADE projects some 7,000 points a second: so many are left to it, of more it measures a share.
@@ -171,7 +174,7 @@ def read_back(
             ),
         ),
         _normal_check(found, seams),
-        attribute_check(attributes_of(surface) | dict(stated or {}), shape),
+        _of_sigma(attribute_check(attributes_of(surface) | dict(stated or {}), shape), surface, sigma, written_here),
     )
     return ReadBack(
         file=path.name,
@@ -267,10 +270,13 @@ def _core_words(count: int, how: Message, left_out: Bools, is_core: Bools) -> Me
 
 
 def _distances(xyz: Floats, is_core: Bools, shape: FileShape, found: Surface) -> tuple[Floats, Message]:
-    """Signed distances: sign and face by our projection, lengths by OpenCASCADE's in map coordinates."""
+    """Signed distances: sign and face by our projection, lengths by OpenCASCADE's in map coordinates.
+
+    OpenCASCADE's takes faces as untrimmed: lengths to trim loops are ours.
+    """
     if not len(xyz):
         return np.empty(0), message("cad.no-points", "no points")
-    ours = project(found.patches, xyz - found.origin)
+    ours = found.project(xyz)
     distance = ours.distance.copy()
     chosen = np.arange(len(xyz))
     how = message("cad.projection-of-opencascade", "OpenCASCADE's projection")
@@ -278,8 +284,10 @@ def _distances(xyz: Floats, is_core: Bools, shape: FileShape, found: Surface) ->
         core = np.flatnonzero(is_core)
         spread = np.unique(np.linspace(0, len(xyz) - 1, MEASURED // 4).astype(int))
         chosen = np.unique(np.concatenate([core[:: max(1, len(core) // MEASURED)], spread]))
+    if any(found.loops) and ours.beyond is not None:
+        chosen = chosen[~ours.beyond[chosen]]
     length = _occ_lengths(shape, xyz, ours, chosen)
-    if len(chosen) < len(xyz):
+    if 0 < len(chosen) < len(xyz):
         apart = np.abs(length - np.abs(ours.distance[chosen])).max()
         how = message(
             "cad.projection-of-both",
@@ -423,6 +431,28 @@ def attribute_check(written: Mapping[str, str], shape: FileShape) -> Check:
         count=len(written),
     )
     return Check("read-back attributes", not wrong, float(len(wrong)), 0.0, "", text)
+
+
+def _of_sigma(attributes: Check, surface: FittedSurface, measured: float, here: Bools) -> Check:
+    """Return the check of the attributes, failed if sigma measured in the file is not the one that the file states.
+
+    Where the file contains the surface ``here`` alone, it is compared with sigma of these points.
+    """
+    if surface.accuracy is None or not np.isfinite(measured):
+        return attributes
+    stated = surface.accuracy.sigma
+    if not here.all():
+        stated = float(np.sqrt(np.sum(surface.accuracy.residuals[here] ** 2) / (here.sum() - 1)))
+    if abs(measured - stated) <= SIGMA + DIGITS * stated:
+        return attributes
+    text = message(
+        "cad.sigma-not-as-stated",
+        "{found}, but sigma, {stated:.6g} m, is not that of the surface in the file: {measured:.6g} m",
+        found=attributes.text,
+        stated=stated,
+        measured=measured,
+    )
+    return replace(attributes, passed=False, value=attributes.value + 1, text=text)
 
 
 def _normal_check(found: Surface, seams: tuple[Seam, ...]) -> Check:

@@ -36,6 +36,8 @@ VOLUME = {"nurbs": 2e-3, "triangles": 1e-6}
 #: Largest difference from the volume of the body itself, relative, beyond its numerical error: flat triangles cut
 #: curves short, and large ones lose thin parts.
 TRUE_VOLUME = 0.02
+#: Volumes from here on are written in whole cubic metres.
+WHOLE = 1e5
 
 
 @dataclass(frozen=True)
@@ -122,6 +124,12 @@ def read_back_body(
     grade = "nurbs" if nurbs else "triangles"
     size = body.size
     best = size.volume if nurbs else body.overview.volume
+    # Of the two differences, the one that is nearer to its limit.
+    apart, limit = max(
+        (abs(volume - best), VOLUME[grade] * best),
+        (abs(volume - size.volume), size.volume_error + TRUE_VOLUME * size.volume),
+        key=lambda pair: pair[0] / max(pair[1], 1e-300),
+    )
     epsilon = body.epsilon
     checks = (
         Check(
@@ -168,25 +176,24 @@ def read_back_body(
         _sigma_check(sigma, epsilon, nurbs=nurbs, cut=trimmed),
         Check(
             "volume",
-            abs(volume / best - 1) <= VOLUME[grade]
-            and abs(volume - size.volume) <= size.volume_error + TRUE_VOLUME * size.volume,
-            volume,
-            best,
+            apart <= limit,
+            apart,
+            limit,
             "m3",
             message(
                 "cad.volume-differs",
-                "The file's solids have {volume:.6g} m3, the body {best:.6g} m3",
-                volume=volume,
-                best=best,
+                "The file's solids have {volume} m³, the body {best} m³",
+                volume=_shown(volume),
+                best=_shown(best),
             )
             if nurbs
             else message(
                 "cad.triangles-volume-differs",
-                "The triangles in the file enclose {volume:.6g} m3, those of the body {best:.6g} m3; with its "
-                "curvature the body has {size:.6g} m3",
-                volume=volume,
-                best=best,
-                size=size.volume,
+                "The triangles in the file enclose {volume} m³, those of the body {best} m³; with its curvature the "
+                "body has {size} m³",
+                volume=_shown(volume),
+                best=_shown(best),
+                size=_shown(size.volume),
             ),
         ),
         _place_check(body, product),
@@ -207,6 +214,11 @@ def read_back_body(
         edge_tolerance=edge,
         checks=checks,
     )
+
+
+def _shown(cubic_metres: float) -> int | str:
+    """Return a volume for a message: whole, which is written in groups, or with six digits."""
+    return round(cubic_metres) if cubic_metres >= WHOLE else f"{cubic_metres:.6g}"
 
 
 def _sigma_check(sigma: float, epsilon: float, *, nurbs: bool, cut: bool) -> Check:

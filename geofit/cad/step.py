@@ -105,10 +105,13 @@ def write_step(
     target, offset = Path(path), _offset(surfaces, origin)
     shells = store_step(surfaces, target, unit=unit, author=author, organisation=organisation, origin=offset)
     stated = offset_attributes(offset)
-    return {
-        name: read_back(as_fitted(surface), shape, surface_of(shape, whole=True), shells[name], target, stated)
-        for (name, surface), shape in zip(surfaces.items(), read_shapes(target), strict=True)
-    }
+    found = {}
+    for (name, surface), shape in zip(surfaces.items(), read_shapes(target), strict=True):
+        fitted = as_fitted(surface)
+        # Measured as the surface was: to its trim loops if it was read with them.
+        whole = surface_of(shape, whole=not any(fitted.loops))
+        found[name] = read_back(fitted, shape, whole, shells[name], target, stated)
+    return found
 
 
 def store_step(

@@ -30,7 +30,7 @@ def cave(
     out: Out,
     radius: Annotated[float | None, typer.Option(help="Wall distance, m, for a survey without walls.")] = None,
     spacing: Annotated[
-        float | None, typer.Option(help="Spacing of the triangles, m. Default: 3/8 of the median diameter.")
+        float | None, typer.Option(help="Spacing of the triangles, m. Default: within 1 % of the volume.")
     ] = None,
     excavation: Annotated[
         Path | None,
@@ -88,6 +88,7 @@ def _print(run: CaveRun) -> None:
         ),
         ("filled walls", f"{len(filled)} of {len(run.body.sections.measured)}"),
         ("spacing of the triangles, m", f"{run.spacing:.3g}"),
+        ("volume of the triangles, m3", f"{run.triangles.volume:.0f}"),
         ("shots thinner than that", str(len(thin))),
     ]
     print_table(("passages", survey.name), rows)

@@ -121,10 +121,15 @@ def _write_step(
     if len(known) == len(surfaces) == 1:
         known = dict(zip(surfaces, known.values(), strict=True))
     settings = {} if site is None else site.settings
-    measured = {
-        name: judge(surface, known[name], settings.get(name), name) if name in known else surface
+    judged = {
+        name: judge(surface, known[name], settings.get(name), name)
         for name, surface in surfaces.items()
+        if name in known
     }
+    for name, one in judged.items():
+        for note in one.accuracy.notes if one.accuracy is not None else ():
+            say(f"{name}: {note}")
+    measured = {**surfaces, **judged}
     folder_for(out.parent)
     (file,) = write_step_files(measured, out, "m", separate=False, signed=signed, progress=lambda *_: True)
     return [file.path] if file.certificate is None else [file.path, file.certificate]

@@ -55,10 +55,8 @@ def pores(
         print_json({**run.figures(), "files": [str(file) for file in run.files]})
     else:
         _print(run)
-    for text in run.permeability.messages:
+    for text in run.messages:
         say(text)
-    if run.surface_note is not None:
-        say(run.surface_note)
     say(f"Files: {', '.join(file.name for file in run.files)} in {out}")
     return 0
 
@@ -80,6 +78,7 @@ def _print(run: PoresRun) -> None:
         return
     before, after = _column(run.table.before), _column(run.table.after)
     columns = [(name, value, after[name]) for name, value in before.items()]
+    columns.insert(1, ("porosity by the triangles, %", "–", f"{100 * run.table.triangles:.2f}"))
     print_table(("figure", "voxels", "rebuilt"), columns)
 
 

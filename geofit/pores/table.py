@@ -54,16 +54,20 @@ class BeforeAfter:
     Attributes
     ----------
     before, after : PoreFigures
+        ``after`` counts the voxels whose middle lies in the body.
+    triangles : float
+        Porosity by the volume within the triangles of the body, which its files have.
     dropped : float
         Porosity of the pores that no face of the sample reaches, which the network leaves out.
     smoothing : float
-        Change of porosity by the smooth surface, without what was dropped.
+        Change of porosity by the smooth surface, ``after`` less what the network has: a share of the sample.
     kozeny_ratio : float
         K after / K before with the grain diameter held, as in the article: phi^3 / (1 - phi)^2 alone.
     """
 
     before: PoreFigures
     after: PoreFigures
+    triangles: float
     dropped: float
     smoothing: float
     kozeny_ratio: float
@@ -103,6 +107,7 @@ def before_after(
     return BeforeAfter(
         before,
         after,
+        body.porosity,
         volume.porosity - held,
         rebuilt.porosity - held,
         kozeny_permeability(after.connectivity.connected, 1.0) / kozeny_permeability(before.connectivity.connected, 1.0)

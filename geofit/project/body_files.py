@@ -17,7 +17,9 @@ from geofit.implicit.mesh import TriangleMesh
 __all__ = ["write_figures", "write_triangles"]
 
 
-def write_triangles(triangles: TriangleMesh, stem: Path, origin: ArrayLike = (0.0, 0.0, 0.0)) -> tuple[Path, ...]:
+def write_triangles(
+    triangles: TriangleMesh, stem: Path, origin: ArrayLike = (0.0, 0.0, 0.0), *, sample: bool = False
+) -> tuple[Path, ...]:
     """Write triangles as ``STEM.stl`` and ``STEM.vtp``; return the files, none if there are no triangles.
 
     Parameters
@@ -28,6 +30,8 @@ def write_triangles(triangles: TriangleMesh, stem: Path, origin: ArrayLike = (0.
         Folder and name without ending.
     origin : (3,) array_like
         Offset that turns the vertices into map coordinates, metres.
+    sample : bool
+        The coordinates are not those of the map: they run along the axes of an array, from the low corner of a sample.
     """
     from geofit.geometry.mesh import Mesh
     from geofit.io.export.triangles import write_stl
@@ -39,7 +43,7 @@ def write_triangles(triangles: TriangleMesh, stem: Path, origin: ArrayLike = (0.
     patch, uv = np.zeros(count, np.int64), np.zeros((count, 3, 2))
     mesh = Mesh(triangles.vertices, triangles.triangles, patch, uv, np.asarray(origin, float), (stem.name,))
     stl, vtp = stem.with_name(f"{stem.name}.stl"), stem.with_name(f"{stem.name}.vtp")
-    write_stl({stem.name: mesh}, stl)
+    write_stl({stem.name: mesh}, stl, sample=sample)
     write_vtp(mesh, vtp)
     return stl, stl.with_name(f"{stl.name}.origin.txt"), vtp
 

@@ -46,8 +46,8 @@ def write_cave_report(
     name = Path(run.adjusted.survey.name).stem
     sheet = cave_sheet(run.triangles, run.adjusted.xyz)
     found = CaveFindings(
-        name, run.body, run.volume, run.spacing, run.strata, run.clearance, sheet.scale, sheet.azimuth,
-        ("plan", "section"), file_stems([name])[name],
+        name, run.body, run.volume, run.spacing, run.triangles.volume, run.strata, run.clearance, sheet.scale,
+        sheet.azimuth, ("plan", "section"), file_stems([name])[name],
     )  # fmt: skip
     images = draw_cave(found, sheet, run.triangles, t)
     view = cave_picture("view", name)

@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from geofit.data.accuracy import plain
 from geofit.data.files import file_stems, folder_for, replacing, spreadsheet_cell
 from geofit.data.progress import Progress, tell
@@ -25,8 +27,11 @@ if TYPE_CHECKING:
 
 __all__ = ["CaveRun", "cut_passages", "measure_passages", "read_survey", "write_passages"]
 
-#: Spacing of the triangles, in units of the spacing that resolves most sections.
-COARSER = 3.0
+#: Spacing of the triangles, in units of the spacing that resolves most sections; where they miss more than this share
+#: of the volume, they become finer, up to about so many triangles.
+COARSER, MISSED, MOST_TRIANGLES = 3.0, 0.01, 400_000
+#: Share of what may be missed that a finer spacing aims at, and how often one is tried.
+AIM, ROUNDS = 0.7, 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +82,7 @@ class CaveRun:
             "strata": plain(self.strata),
             "clearance": None if self.clearance is None else _nearest(self.clearance),
             "mesh_spacing": self.spacing,
+            "mesh_volume": self.triangles.volume,
             "thinner_than_mesh": [list(shot) for shot in self.body.thinner_than(self.spacing)],
             "version": __version__,
         }
@@ -132,7 +138,8 @@ def measure_passages(
     radius : float, optional
         Distance of the walls of a survey without walls, metres.
     spacing : float, optional
-        Spacing of the triangles, metres; by default three eighths of the median diameter.
+        Spacing of the triangles, metres; by default three eighths of the median diameter, and less where the
+        triangles would miss more than 1 % of the volume.
     excavation : Survey, optional
         A planned excavation with the size of its section, whose distance from the passages is wanted.
     horizons : mapping of str to surface, optional
@@ -156,8 +163,7 @@ def measure_passages(
     tell(progress, "volume", 0.1)
     volume = volume_estimate(body)
     tell(progress, "triangles", 0.5)
-    step = COARSER * body.fine if spacing is None else spacing
-    triangles = body.triangulate(step)
+    step, triangles = _triangles(body, volume.volume) if spacing is None else (spacing, body.triangulate(spacing))
     away = None
     if excavation is not None:
         tell(progress, "clearance", 0.8)
@@ -165,6 +171,21 @@ def measure_passages(
         away = clearance(body, points, polyline=False, radius=size)
     run = CaveRun(body, volume, step, triangles, (), (), away)
     return cut_passages(run, horizons, progress) if horizons else run
+
+
+def _triangles(body: PassageBody, volume: float) -> tuple[float, TriangleMesh]:
+    """Return triangles that have the volume of the passages, and their spacing."""
+    step = COARSER * body.fine
+    triangles = body.triangulate(step)
+    for _ in range(ROUNDS):
+        missed = abs(triangles.volume - volume) / max(volume, 1e-300)
+        # What is missed falls with the square of the spacing, and the triangles grow with it.
+        finer = max(np.sqrt(AIM * MISSED / max(missed, MISSED)), np.sqrt(len(triangles.triangles) / MOST_TRIANGLES))
+        if missed <= MISSED or finer >= 1:
+            break
+        step = float(finer) * step
+        triangles = body.triangulate(step)
+    return step, triangles
 
 
 def cut_passages(run: CaveRun, horizons: Mapping[str, HasElevation], progress: Progress | None = None) -> CaveRun:

@@ -21,13 +21,18 @@ __all__ = ["MetaballsRun", "run_metaballs"]
 
 @dataclass(frozen=True, eq=False)
 class MetaballsRun:
-    """Metaballs of a volume and the files that were written."""
+    """Metaballs of a volume, the volume within their triangles (m3), and the files that were written."""
 
     body: FittedMetaballs
+    volume_of_triangles: float
     files: tuple[Path, ...]
 
     def figures(self) -> dict[str, Any]:
-        """Return everything that the JSON file has, as plain data; lengths in metres."""
+        """Return everything that the JSON file has, as plain data; lengths in metres.
+
+        ``volume`` is that of the voxels whose middle lies within the surface, ``volume_of_triangles`` that of its
+        files.
+        """
         from geofit import __version__
 
         return {
@@ -38,6 +43,7 @@ class MetaballsRun:
             "candidates": self.body.candidates,
             "evaluations": self.body.evaluations,
             **plain(self.body.figures),
+            "volume_of_triangles": self.volume_of_triangles,
             "version": __version__,
         }
 
@@ -77,7 +83,8 @@ def run_metaballs(
         rows = csv.writer(stream, lineterminator="\n")
         rows.writerow(("axis0_m", "axis1_m", "axis2_m", "radius_m"))
         rows.writerows([f"{value:.9g}" for value in ball] for ball in body.balls.tolist())
-    triangles = write_triangles(body.triangulate(volume.unit), stem.with_name(f"{stem.name}_metaballs"))
-    run = MetaballsRun(body, (figures, table, *triangles))
+    mesh = body.triangulate(volume.unit)
+    triangles = write_triangles(mesh, stem.with_name(f"{stem.name}_metaballs"), sample=True)
+    run = MetaballsRun(body, mesh.volume, (figures, table, *triangles))
     write_figures(run.figures(), figures)
     return run

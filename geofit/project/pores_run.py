@@ -46,6 +46,12 @@ class PoresRun:
 
         return None if self.surface is None else volume_note(self.surface.porosity, self.network.porosity)
 
+    @property
+    def messages(self) -> tuple[Message, ...]:
+        """What a reader of the figures must know: of the flow, and of the surface."""
+        note = self.surface_note
+        return (*self.permeability.messages, *((note,) if note is not None else ()))
+
     def figures(self) -> dict[str, Any]:
         """Return everything that the JSON file has, as plain data; lengths in metres."""
         from geofit import __version__
@@ -66,6 +72,7 @@ class PoresRun:
                 "percolates": plain(network.percolates),
                 "settings": plain(network.settings),
                 "network_permeability": plain(self.permeability.square_metres),
+                "messages": plain(self.messages),
                 **(plain(self.table) if self.table is not None else {}),
                 "version": __version__,
             },
@@ -124,7 +131,9 @@ def run_pores(volume: RockVolume | SlicedVolume, out: Path, name: str, progress:
     write_network_vtp(network, lines)
     statoil = write_statoil(network, out, stem.name)
     figures = stem.with_name(f"{stem.name}.json")
-    triangles = write_triangles(surface.triangulate(), stem.with_name(f"{stem.name}_surface")) if surface else ()
+    triangles = (
+        write_triangles(surface.triangulate(), stem.with_name(f"{stem.name}_surface"), sample=True) if surface else ()
+    )
     files = (figures, *tables, openpnm, *statoil, lines, *triangles)
     run = PoresRun(volume, balls, network, permeability, surface, table, files)
     write_figures(run.figures(), figures)

@@ -107,7 +107,7 @@ def write_section_sheet(
     """Cut the sections and write the sheet; return its scale, 1 : so many, and the files.
 
     ``bodies`` are drawn by name with the band of their surface; each sheet names those that are stale, and those of the
-    surfaces that ``stale`` names.
+    surfaces that ``stale`` names. Points are drawn of the horizons of ``surfaces``, of all if there are none.
 
     Raises
     ------
@@ -128,7 +128,8 @@ def write_section_sheet(
         shown = tuple(trace for trace in traces if trace.rings)
         old = [name for name, lines in found.traces.items() if lines and name in stale]
         old += [trace.name for trace in shown if bodies and bodies[trace.name].stale]
-        views.append(replace(found, bodies=shown, stale=tuple(old)))
+        points = {name: of if name in surfaces or not surfaces else of[:0] for name, of in found.points.items()}
+        views.append(replace(found, points=points, bodies=shown, stale=tuple(old)))
     tell(progress, "drawing", 0.8)
     files: list[Path] = []
     scale = order.scale or fitting_scale(views, order.paper, order.exaggeration, order.block.unit)

@@ -242,7 +242,7 @@ def write_pores_report(
             )
         )
     settling = representative_volume(run.volume)
-    found = PoresFindings(name, run.volume, len(run.balls), run.network, run.table, settling)
+    found = PoresFindings(name, run.volume, len(run.balls), run.network, run.table, settling, run.surface_note)
     images = draw_pores(found, run.surface.triangulate(), t)
     what = tuple(drawn for picture in images if (drawn := picture.split("/")[1]) != "surface")
     chapter = pores_chapter(replace(found, pictures=what), t)

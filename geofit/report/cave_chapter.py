@@ -43,14 +43,16 @@ _GAP = "\N{NO-BREAK SPACE}"
 class CaveFindings:
     """Everything that a chapter says of passages.
 
-    ``spacing`` is that of their triangles, metres; ``scale`` that of the drawings, one to so many; ``azimuth`` that of
-    the plane of the long section, degrees; ``pictures`` those that were drawn; ``stem`` the name of the tables.
+    ``spacing`` is that of their triangles, metres, and ``mesh_volume`` the volume within them; ``scale`` that of the
+    drawings, one to so many; ``azimuth`` that of the plane of the long section, degrees; ``pictures`` those that were
+    drawn; ``stem`` the name of the tables.
     """
 
     name: str
     body: PassageBody
     volume: VolumeEstimate
     spacing: float
+    mesh_volume: float
     strata: tuple[Stratum, ...] = ()
     clearance: Clearance | None = None
     scale: int = 0
@@ -305,5 +307,6 @@ def _method(found: CaveFindings, t: Language) -> list[Block]:
         ),
         (t("radius of the smooth union at junctions"), digits.length(found.body.blend)),
         (t("spacing of the triangles"), digits.length(found.spacing)),
+        (t("volume of the triangles"), digits.volume(found.mesh_volume)),
     )
     return [Heading(t("Settings")), ReportTable((Column(t("Setting")), Column(t("Value"), "wide")), rows)]

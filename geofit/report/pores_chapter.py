@@ -25,6 +25,7 @@ from geofit.report.document import (
 )
 
 if TYPE_CHECKING:
+    from geofit.data.messages import Message
     from geofit.pores.network import PoreNetwork
     from geofit.pores.representative import RepresentativeVolume
     from geofit.pores.table import BeforeAfter, PoreFigures
@@ -47,7 +48,10 @@ SHARES = (10, 50, 90)
 
 @dataclass(frozen=True, eq=False)
 class PoresFindings:
-    """Everything that a chapter says of a rock volume; ``balls`` counts its maximal balls."""
+    """Everything that a chapter says of a rock volume; ``balls`` counts its maximal balls.
+
+    ``surface_note`` says what the triangles of the surface have more or less than the voxels, if it is much.
+    """
 
     name: str
     volume: RockVolume
@@ -55,6 +59,7 @@ class PoresFindings:
     network: PoreNetwork
     table: BeforeAfter
     settling: RepresentativeVolume
+    surface_note: Message | None = None
     pictures: tuple[str, ...] = ()
 
 
@@ -107,18 +112,25 @@ def _table(found: PoresFindings, t: Language) -> list[Block]:
         Column(t("Rebuilt"), "number"),
         Column(t("Relative change"), "number"),
     )
-    rows = tuple(
-        (name, shown, after[name][0], _change(value, after[name][1])) for name, (shown, value) in before.items()
+    porosity, inside = found.volume.porosity, found.table.triangles
+    rows = [(name, shown, after[name][0], _change(value, after[name][1])) for name, (shown, value) in before.items()]
+    within = t("porosity by the triangles of the surface"), "–", digits.share(inside), _change(porosity, inside)
+    rows.insert(1, within)
+    counted = t(
+        "Rebuilt: of the voxels whose middle lies within the smooth surface. The files of the surface have its "
+        "triangles; the porosity by the volume within them has a row of its own."
     )
     note = t(
         "Kozeny's permeability is an upper bound: it ignores how the pores are connected. At the same grain size, its "
         "ratio after to before is {ratio}. Pores that no face of the sample reaches, {dropped} of the sample, are left "
-        "out of the network; the smooth surface changes the rest by {smoothing}.",
+        "out of the network; the smooth surface changes the porosity of the rest by {smoothing} percentage points.",
         ratio=f"{found.table.kozeny_ratio:.3f}",
         dropped=digits.share(found.table.dropped),
-        smoothing=digits.share(found.table.smoothing),
+        smoothing=f"{100 * found.table.smoothing:+.1f}".replace("-", "−"),
     )
-    return [Heading(t("Before and after")), ReportTable(head, rows), Paragraph(note, "quiet")]
+    warning = () if found.surface_note is None else (Paragraph(sentence(found.surface_note, t), "warning"),)
+    notes = (Paragraph(counted, "quiet"), Paragraph(note, "quiet"))
+    return [Heading(t("Before and after")), *warning, ReportTable(head, tuple(rows)), *notes]
 
 
 def _column(figures: PoreFigures, t: Language) -> dict[str, tuple[str, float | None]]:

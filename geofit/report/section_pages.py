@@ -268,7 +268,11 @@ def _draw(
     for name, places in view.points.items():
         if len(places):
             marker = kind_style("borehole")[0]
-            axes.plot(*places.T, ls="none", marker=marker, ms=2.6, color=colours[name], mec="white", mew=0.3, zorder=6)
+            entry = None if view.traces.get(name) else t("points of {name}", name=name)
+            axes.plot(
+                *places.T, ls="none", marker=marker, ms=2.6, color=colours[name], mec="white", mew=0.3, label=entry,
+                zorder=6,
+            )  # fmt: skip
 
 
 def _number(axes: Axes, unit: LengthUnit, tall: float, t: Language) -> None:
@@ -299,7 +303,10 @@ def _bodies(axes: Axes, view: SectionView, t: Language) -> None:
 
 
 def _column(axes: Axes, hole: HoleTrack, half: float, styles: Mapping[str, tuple[str, str]]) -> None:
-    """Draw a hole with a column for each of its interval tables side by side, its name over the collar."""
+    """Draw a hole with a column for each of its interval tables side by side, its name over the collar.
+
+    A name that would cross the upper edge of the drawing is above it.
+    """
     from matplotlib.patches import Polygon
 
     axes.plot(*hole.track.T, color=TEXT, lw=0.6, zorder=4)
@@ -310,10 +317,12 @@ def _column(axes: Axes, hole: HoleTrack, half: float, styles: Mapping[str, tuple
         outline = np.concatenate([interval.track + left, interval.track[::-1] + right])
         axes.add_patch(Polygon(outline, fc=colour, ec=TEXT, lw=0.3, hatch=hatch, zorder=4))
     top = hole.track[hole.track[:, 1].argmax()]
-    axes.annotate(
+    name = axes.annotate(
         hole.name, top, xytext=(0, 3), textcoords="offset points", ha="center", va="bottom", rotation=90, size=6,
-        color=TEXT, zorder=7,
+        color=TEXT, zorder=7, annotation_clip=False,
     )  # fmt: skip
+    if name.get_window_extent().y1 > axes.bbox.y1:
+        name.xy = (top[0], axes.get_ylim()[1])
 
 
 def _legend(

@@ -52,7 +52,7 @@ def write_sheet_dxf(
         If the file cannot be written.
     """
     views = [in_unit(view, unit) for view in views]
-    horizons = list(dict.fromkeys(name for view in views for name in (*view.traces, *view.points)))
+    horizons = list(dict.fromkeys(name for view in views for name in (*view.traces, *_with_points(view))))
     codes = lithologies(list(views))
     bodies = list(dict.fromkeys(f"BODY_{body.name}" for view in views for body in view.bodies))
     stems = file_stems([*horizons, *(f"LITH_{code}" for code in codes), *bodies])
@@ -80,6 +80,10 @@ def write_sheet_dxf(
             corners = at(np.array([[0.0, low], [view.length, low], [view.length, high], [0.0, high]]))
             space.add_lwpolyline(corners, close=True, dxfattribs={"layer": FRAME})
             drop += (high - low) * exaggeration + 0.12 * view.length
+
+
+def _with_points(view: SectionView) -> list[str]:
+    return [name for name, places in view.points.items() if len(places)]
 
 
 def _section(space: Modelspace, view: SectionView, at: Any, stems: dict[str, str]) -> None:
@@ -111,7 +115,11 @@ def _section(space: Modelspace, view: SectionView, at: Any, stems: dict[str, str
 
 def _hole(space: Modelspace, view: SectionView, hole: HoleTrack, at: Any, stems: dict[str, str]) -> None:
     space.add_lwpolyline(at(hole.track), dxfattribs={"layer": HOLES})
-    _text(space, hole.name, at(hole.track[[hole.track[:, 1].argmax()]])[0], LETTERS * view.length, 0.3, turned=90.0)
+    letters, (x, y) = LETTERS * view.length, at(hole.track[[hole.track[:, 1].argmax()]])[0]
+    ((_, edge),) = at(np.array([[0.0, view.levels[1]]]))
+    # A letter is at most about as wide as high: a name that would cross the frame is above it.
+    above = max(y, edge) if y + 0.3 + letters * len(hole.name) > edge else y
+    _text(space, hole.name, (x, above), letters, 0.3, turned=90.0)
     tables = list(dict.fromkeys(interval.table for interval in hole.intervals))
     wide = 2 * COLUMN * view.length
     for interval in hole.intervals:

@@ -28,6 +28,8 @@ Floats = NDArray[np.float64]
 
 #: Base colours of the horizons in turn in glTF: earth tones that stay apart.
 COLOURS = ((0.76, 0.60, 0.42), (0.55, 0.64, 0.45), (0.45, 0.56, 0.68), (0.70, 0.47, 0.43), (0.60, 0.52, 0.66))
+#: What the origin of a rock sample is along: the axes of its array.
+AXES = ("axis0", "axis1", "axis2")
 #: glTF codes: float, unsigned int; vertex and index buffers; triangles.
 FLOAT, UINT, VERTICES, INDICES, TRIANGLES = 5126, 5125, 34962, 34963, 4
 
@@ -76,8 +78,11 @@ def write_ply(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> None:
         part.write_bytes("\n".join(head).encode("ascii") + body)
 
 
-def write_stl(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> Floats:
-    """Write binary STL, relative to an origin; return the origin, which is in ``FILE.origin.txt`` too."""
+def write_stl(meshes: Mapping[str, Mesh], path: str | PathLike[str], *, sample: bool = False) -> Floats:
+    """Write binary STL, relative to an origin; return the origin, which is in ``FILE.origin.txt`` too.
+
+    The coordinates are those of the map, or of a ``sample`` along the axes of its array.
+    """
     origin = common_origin(_given(meshes, path))
     kind = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
     triangles = []
@@ -92,7 +97,7 @@ def write_stl(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> Floats:
     head = b"metres relative to the origin in the text file next to it".ljust(80)
     with replacing(path) as part:
         part.write_bytes(head + np.uint32(len(every)).astype("<u4").tobytes() + every.tobytes())
-    _state_origin(origin, path, "x east, y north, z up")
+    _state_origin(origin, path, "x axis 0, y axis 1, z axis 2" if sample else "x east, y north, z up", sample=sample)
     return origin
 
 
@@ -187,12 +192,15 @@ def _magnitude(meshes: Mapping[str, Mesh]) -> int:
     return math.ceil(math.log10(longest)) if longest > 0 else 0
 
 
-def _state_origin(origin: Floats, path: str | PathLike[str], axes: str) -> None:
+def _state_origin(origin: Floats, path: str | PathLike[str], axes: str, *, sample: bool = False) -> None:
     target = Path(path)
-    x, y, z = (np.format_float_positional(c, min_digits=3) for c in origin.tolist())
+    wanted, names = "map coordinates, metres", ("easting", "northing", "elevation")
+    if sample:
+        wanted, names = "metres from the low corner of the sample, along the axes of the array", AXES
+    places = (np.format_float_positional(c, min_digits=3) for c in origin.tolist())
     text = (
-        f"Origin of {target.name}: add it to the file's coordinates to get map coordinates, metres.\n"
-        f"Axes of the file: {axes}.\neasting {x}\nnorthing {y}\nelevation {z}\n"
+        f"Origin of {target.name}: add it to the file's coordinates to get {wanted}.\nAxes of the file: {axes}.\n"
+        + "".join(f"{name} {place}\n" for name, place in zip(names, places, strict=True))
     )
     with replacing(target.with_name(target.name + ".origin.txt")) as part:
         part.write_text(text, encoding="utf-8", newline="\n")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -67,6 +68,16 @@ def test_a_file_whose_attributes_were_changed_is_found_out(surfaces, tmp_path):
     assert check.value == 1.0
 
 
+def test_a_sigma_that_the_surface_does_not_have_is_found_out(surfaces, tmp_path):
+    fit = surfaces["T2"]
+    wrong = fit.with_(accuracy=replace(fit.accuracy, sigma=2 * fit.accuracy.sigma))
+    for one, passed in ((fit, True), (wrong, False)):
+        back = write_step({"T2": one}, tmp_path / "dam.step")["T2"]
+        (check,) = [check for check in back.checks if check.name == "read-back attributes"]
+        assert check.passed is passed
+        assert (check.text.code == "cad.sigma-not-as-stated") is not passed
+
+
 def test_author_and_organisation_are_in_the_head_and_the_bytes_stay_the_same(surfaces, tmp_path):
     for name in ("a", "b"):
         write_step(surfaces, tmp_path / f"{name}.step", author="M. O'Neil", organisation="长江设计院")
@@ -104,8 +115,6 @@ def test_the_certificate_is_one_page_with_the_figures_of_the_file(surfaces, tmp_
 
 
 def test_many_horizons_stay_on_one_page_and_a_failed_one_is_named(surfaces, tmp_path):
-    from dataclasses import replace
-
     found = write_step({"T2": surfaces["T2"]}, tmp_path / "dam.step")["T2"]
     bad = replace(found, checks=(replace(found.checks[0], passed=False), *found.checks[1:]))
     every = {f"T{k}": bad if k == 3 else found for k in range(20)}

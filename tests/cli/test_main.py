@@ -494,6 +494,42 @@ def test_report_takes_chosen_horizons_and_its_title_block_from_options(tmp_path,
     assert (code, "T2/T1" in err) == (2, True)
 
 
+def test_points_outside_a_concave_area_are_named_and_no_file_states_another_sigma_than_its_own(
+    tmp_path, monkeypatch, capsys
+):
+    write_picks(tmp_path / "picks.csv")
+    site = tmp_path / "site.toml"
+    ring = ((0, 0), (620, 0), (620, 620), (450, 620), (310, 400), (180, 620), (0, 620))
+    corners = "".join(f"{WEST + x},{SOUTH + y}\n" for x, y in ring)
+    (tmp_path / "area.csv").write_text(f"x,y\n{corners}")
+    site.write_text('[picks]\nfile = "picks.csv"\n[boundary]\nfile = "area.csv"\n', encoding="utf-8")
+    from geofit.cad.step import read_shapes, read_step, write_step
+    from geofit.fitting.judge import judge
+    from geofit.io.site_file import read_site
+
+    code, _, err = run(monkeypatch, capsys, "fit", site, "--out", tmp_path / "o")
+    assert code == 0, err
+    step, again = tmp_path / "o" / "T3_T2.step", tmp_path / "again.step"
+    code, _, err = run(
+        monkeypatch, capsys, "export", step, "--to", "step", "--out", again, "--points", site, "--certificate"
+    )
+    assert code == 0, err
+    assert "points beyond the surface's edge" in err
+    assert "picks.csv" in err
+    stated = [float(read_shapes(path)[0].attributes["sigma_m"]) for path in (step, again)]
+    assert stated[1] > 10 * stated[0]
+    _, text, _ = run(monkeypatch, capsys, "check", again, site, "--json")
+    assert json.loads(text)["sigma"] == pytest.approx(stated[1], rel=1e-5)
+    (beyond,) = [one for one in json.loads(text)["checks"] if one["name"] == "beyond the surface"]
+    assert beyond["value"] > 0
+    (surface,) = read_step(again).values()
+    (points,) = read_site(site).horizons.values()
+    (back,) = write_step({"T3/T2": judge(surface, points)}, tmp_path / "judged.step").values()
+    assert back.sigma == pytest.approx(stated[1], rel=1e-5)
+    (check,) = [check for check in back.checks if check.name == "read-back attributes"]
+    assert check.passed
+
+
 def test_step_files_state_origin_author_and_certificate(tmp_path, monkeypatch, capsys):
     picks = write_picks(tmp_path / "picks.csv", names=("T3/T2", "T2/T1"))
     site = tmp_path / "site.toml"

@@ -10,6 +10,7 @@ from refusals import refused
 from shapes import pack
 
 from geofit.data.errors import InputError
+from geofit.data.languages import EN, sentence
 from geofit.io.export.network import (
     openpnm_dictionary,
     read_statoil,
@@ -19,9 +20,12 @@ from geofit.io.export.network import (
     write_openpnm_json,
     write_statoil,
 )
+from geofit.io.meshes import read_stl
 from geofit.io.volumes import read_volume
 from geofit.pores import RockVolume, VolumeError, pore_network
+from geofit.project.metaballs_run import run_metaballs
 from geofit.project.pores_run import run_pores
+from geofit.project.single_reports import write_pores_report
 
 ARRAY = (np.random.default_rng(0).random((4, 5, 6)) < 0.3).astype(np.uint8)
 
@@ -141,6 +145,38 @@ def test_a_volume_of_pore_only_is_refused_before_any_computation(tmp_path, recwa
     assert not recwarn.list
 
 
+def test_figures_of_the_surface_are_those_of_its_file(tmp_path):
+    """Voxels whose middle lies within the surface are fewer than its volume: both are stated, each as what it is."""
+    volume = RockVolume(np.random.default_rng(3).random((12, 10, 8)) < 0.6, pore=True, voxel=(2e-6, 3e-6, 4e-6))
+    run = run_pores(volume, tmp_path, "sand")
+    written = read_stl(tmp_path / "sand_surface.stl").volume / np.prod(volume.size)
+    figures = json.loads((tmp_path / "sand.json").read_text(encoding="utf-8"))
+    assert figures["triangles"] == pytest.approx(written, rel=1e-4)
+    assert figures["after"]["connectivity"]["porosity"] == pytest.approx(run.surface.voxels().mean())
+    page, _ = write_pores_report(run, "sand", tmp_path)
+    text = page.read_text(encoding="utf-8").replace("\N{NO-BREAK SPACE}", " ").replace("&nbsp;", " ")
+    assert f"{100 * written:.1f} %" in text
+    assert "voxels whose middle lies within the smooth surface" in text
+    assert f"{100 * run.table.smoothing:+.1f}".replace("-", "−") + " percentage points" in text
+    words = (tmp_path / "sand_surface.stl.origin.txt").read_text(encoding="utf-8")
+    assert "along the axes of the array" in words
+    assert "x axis 0, y axis 1, z axis 2" in words
+    assert not any(word in words for word in ("map", "east", "north", "elevation"))
+
+
+def test_metaballs_state_the_volume_of_their_file(tmp_path):
+    run = run_metaballs(RockVolume(ARRAY, pore=1, voxel=1e-6), tmp_path, "balls", max_balls=3)
+    figures = json.loads((tmp_path / "balls_metaballs.json").read_text(encoding="utf-8"))
+    written = read_stl(tmp_path / "balls_metaballs.stl")
+    assert figures["volume_of_triangles"] == pytest.approx(written.volume, rel=1e-4)
+    assert figures["volume"] == pytest.approx(np.count_nonzero(run.body.covered()) * 1e-18)
+    # The origin along the axes of the array is added where the file is read.
+    low, high = run.body.bounds
+    assert (written.vertices.min(axis=0) > low).all()
+    assert (written.vertices.max(axis=0) < high).all()
+    assert "east" not in (tmp_path / "balls_metaballs.stl.origin.txt").read_text(encoding="utf-8")
+
+
 def test_a_surface_without_the_volume_of_the_voxels_is_reported(monkeypatch, tmp_path):
     line = np.zeros((18, 15, 15), bool)
     line[:, 7, 7] = True
@@ -155,6 +191,10 @@ def test_a_surface_without_the_volume_of_the_voxels_is_reported(monkeypatch, tmp
     assert run.surface_note.code == "pores.surface-volume-off"
     change = run.surface.triangulate().volume / (np.count_nonzero(widened) * 1e-18) - 1
     assert run.surface_note.params["change"] == pytest.approx(change)
+    figures = json.loads((tmp_path / "widened" / "widened.json").read_text(encoding="utf-8"))
+    assert [entry["code"] for entry in figures["messages"]][-1] == "pores.surface-volume-off"
+    page, _ = write_pores_report(run, "widened", tmp_path / "widened")
+    assert sentence(run.surface_note, EN) in page.read_text(encoding="utf-8")
     run = run_pores(RockVolume(line, pore=True, voxel=1e-6), tmp_path / "missed", "missed")
     assert not list((tmp_path / "missed").glob("*.stl"))
     assert run.surface_note.code == "pores.no-surface"

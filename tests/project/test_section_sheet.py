@@ -11,7 +11,7 @@ import pytest
 import geofit
 from geofit.bodies.section import chance_lines, outline_rings
 from geofit.data.languages import language
-from geofit.data.site import Site
+from geofit.data.site import Hole, Site
 from geofit.implicit.mesh import TriangleMesh
 from geofit.project.section_sheet import SheetBody, SheetOrder, write_section_sheet
 from geofit.report.paper import SheetTitle
@@ -101,18 +101,69 @@ def test_every_format_has_the_body(ball, mesh, tmp_path):
     assert low >= min(y for _, y in corner.get_points("xy"))
 
 
-@pytest.mark.parametrize(("code", "words"), [("en", ("body ball", "80 % chance")), ("zh", ("地质体 ball", "80 %"))])
-def test_the_legend_names_body_and_band(code, words, tmp_path, monkeypatch):
+def two_horizons():
+    """A site with two horizons and a hole at the highest place of its section, and the lower horizon's surface."""
+    x, y = np.meshgrid(np.linspace(-150, 150, 7), np.linspace(-150, 150, 7))
+    at = {"top": -20.0, "base": -60.0}
+    points = {
+        name: geofit.PointSet(np.column_stack([x.ravel(), y.ravel(), z + 0.05 * x.ravel()]) + PLACE)
+        for name, z in at.items()
+    }
+    hole = Hole("ZK-with-a-name", "borehole", np.array([0.0, 100.0]), np.array([[0.0, 0, 0], [0, 0, -100]]) + PLACE)
+    return Site("trial", points, holes=(hole,)), {"base": geofit.fit_horizon(points["base"], name="base")}
+
+
+def legend_of(monkeypatch):
+    """Return the list that the labels of each legend are added to."""
     from matplotlib.figure import Figure
 
-    found = []
-    plain = Figure.legend
+    found, plain = [], Figure.legend
 
     def legend(self, handles, labels, **options):
         found.extend(labels)
         return plain(self, handles, labels, **options)
 
     monkeypatch.setattr(Figure, "legend", legend)
+    return found
+
+
+def test_points_are_those_of_the_horizons_on_the_sheet(tmp_path, monkeypatch):
+    site, surfaces = two_horizons()
+    labels = legend_of(monkeypatch)
+    for shown, layers, named in (
+        (surfaces, {"base_points"}, []),
+        ({}, {"top_points", "base_points"}, ["points of top", "points of base"]),
+    ):
+        labels.clear()
+        order = SheetOrder({"A": THROUGH}, 60.0, SheetTitle("Section"), tmp_path / "sheet", ("svg", "dxf"))
+        write_section_sheet(site, shown, {}, order)
+        document = ezdxf.readfile(tmp_path / "sheet.dxf")
+        assert {one.dxf.layer for one in document.modelspace().query("POINT")} == layers
+        assert {layer.dxf.name for layer in document.layers if layer.dxf.name.endswith("_points")} == layers
+        assert [label for label in labels if label.startswith("points")] == named
+
+
+def test_names_of_holes_do_not_cross_the_edge_of_the_drawing(tmp_path):
+    from geofit.report.section_pages import sheet_page
+
+    site, surfaces = two_horizons()
+    view = section_view(site, surfaces, THROUGH, 60.0, name="A")
+    figure = sheet_page([view], view, 1, SheetTitle("Section"), "A3", 2000, 1.0, language("en"))
+    figure.draw_without_rendering()
+    (axes,) = (one for one in figure.axes if one.texts and one.lines)
+    (name,) = (text for text in axes.texts if text.get_text() == "ZK-with-a-name")
+    assert name.get_window_extent().y0 > axes.bbox.y1
+    order = SheetOrder({"A": THROUGH}, 60.0, SheetTitle("Section"), tmp_path / "sheet", ("dxf",))
+    write_section_sheet(site, surfaces, {}, order)
+    space = ezdxf.readfile(tmp_path / "sheet.dxf").modelspace()
+    (frame,) = space.query('LWPOLYLINE[layer=="FRAME"]')
+    (written,) = (text for text in space.query("TEXT") if text.dxf.text == "ZK-with-a-name")
+    assert written.dxf.insert.y > max(y for _, y in frame.get_points("xy"))
+
+
+@pytest.mark.parametrize(("code", "words"), [("en", ("body ball", "80 % chance")), ("zh", ("地质体 ball", "80 %"))])
+def test_the_legend_names_body_and_band(code, words, tmp_path, monkeypatch):
+    found = legend_of(monkeypatch)
     ring = np.array([[100.0, 0], [150, 0], [150, 30], [100, 30]])
     view = section_view(Site("trial", {}), {}, THROUGH, 30.0, name="A")
     view = replace(view, bodies=(BodyTrace("ball", "#b3572f", (ring,), (ring + 3,)),))

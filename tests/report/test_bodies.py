@@ -98,6 +98,18 @@ def test_a_body_has_verdict_volumes_strata_sections_and_holes_in_its_chapter(run
     assert {"Volume", "Violations", "Checks of the body", "One hole left out at a time"} <= set(names)
 
 
+def test_the_volume_in_the_file_is_written_as_elsewhere_and_its_limit_is_one(run):
+    found, _ = body_findings(run)
+    tables = [b for b in body_chapter(found, EN).blocks if isinstance(b, ReportTable)]
+    (row,) = (row for table in tables for row in table.rows if row[0] == "volume")
+    (check,) = (one for one in found.read_back.checks if one.name == "volume")
+    assert check.value <= check.limit < 0.05 * found.volumes.best
+    detail = row[4].replace("\N{NO-BREAK SPACE}", " ")
+    assert f"{found.read_back.volume:,.0f} m³".replace(",", " ") in detail
+    assert "m3" not in detail
+    assert "e+" not in " ".join(cell for cell in row if isinstance(cell, str))
+
+
 def test_what_was_not_examined_and_a_failed_check_are_said(run):
     found, _ = body_findings(run)
     assert found.strata == ()

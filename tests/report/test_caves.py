@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import re
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 from geofit.cli.main import main
 from geofit.data.languages import EN
 from geofit.io.centreline import read_centreline
+from geofit.io.meshes import read_stl
 from geofit.io.survex import read_survex
 from geofit.project.cave_report import write_cave_report
 from geofit.project.cave_run import measure_passages, write_passages
@@ -46,7 +48,30 @@ def text_of(chapter):
 
 
 def found(run, **changes):
-    return CaveFindings("cave", run.body, run.volume, run.spacing, run.strata, run.clearance, **changes)
+    return CaveFindings(
+        "cave", run.body, run.volume, run.spacing, run.triangles.volume, run.strata, run.clearance, **changes
+    )
+
+
+def test_the_files_of_the_passages_have_their_volume(tmp_path):
+    path = tmp_path / "cave.csv"
+    rows = ("1,500000,5400000,-20,3,3,2,2", "2,500030,5400000,-25,3,3,2,2", "3,500060,5400020,-30,4,3,2,2")
+    path.write_text("\n".join(["station,x,y,z,left,right,up,down", *rows]))
+    write_passages(measure_passages(read_centreline(path)), tmp_path / "o")
+    figures = json.loads((tmp_path / "o" / "cave.json").read_text(encoding="utf-8"))
+    written = read_stl(tmp_path / "o" / "cave.stl")
+    assert written.volume == pytest.approx(figures["volume"]["volume"], rel=0.01)
+    assert figures["mesh_volume"] == pytest.approx(written.volume, rel=1e-5)
+    assert len(written.triangles) < 50_000
+    # Triangles whose spacing was given are as wished, and what they enclose is stated.
+    coarse = measure_passages(read_centreline(path), spacing=1.5)
+    assert coarse.spacing == 1.5
+    assert coarse.triangles.volume < 0.97 * coarse.volume.volume
+    assert f"{coarse.triangles.volume:.0f}" in words_of(cave_chapter(found(coarse), EN), "Settings")
+
+
+def words_of(chapter, heading):
+    return " ".join(cell for row in table(chapter, heading).rows for cell in row).replace("\N{NO-BREAK SPACE}", "")
 
 
 @pytest.fixture
