@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from shapely import Polygon, contains_xy
 from truth import EASTING, NORTHING, hills
 
 from geofit import FitSettings, PointSet
@@ -66,3 +67,25 @@ def faulted_site():
         boundary=BOUNDARY,
         faults={"F1": ("T2",)},
     )
+
+
+#: An area of two arms.
+ARMS = np.array([[0, 0], [1000, 0], [1000, 400], [400, 400], [400, 600], [1000, 600], [1000, 1000], [0, 1000.0]])
+
+
+def armed_points(keep=lambda x, y: np.full(len(x), True)):
+    """A horizon over an area of two arms, thrown by 20 m along a trace that cuts both."""
+    x, y = np.random.default_rng(11).uniform(0, 1000, (2, 240))
+    z = 20 * np.sin(x / 200) + 10 * np.cos(y / 150) - np.where(x > 450 + 0.1 * y, 20, 0)
+    mine = contains_xy(Polygon(ARMS), x, y) & keep(x, y)
+    return PointSet(np.column_stack([x, y, z])[mine])
+
+
+def armed_site():
+    """Such a horizon, "T2", with its fault "F1" upright through both arms."""
+    y, z = (grid.ravel() for grid in np.meshgrid(np.linspace(0, 1000, 12), np.linspace(-100, 100, 5)))
+    fault = PointSet(np.column_stack([450 + 0.1 * y, y, z]), file="f.csv", row=np.arange(len(y)))
+    points = armed_points()
+    horizons = {"T2": points.with_(file="t.csv", row=np.arange(len(points))), "F1": fault}
+    settings = {"F1": FitSettings(frame="best-plane")}
+    return Site("Arms", horizons, settings=settings, boundary=ARMS, faults={"F1": ("T2",)})

@@ -85,7 +85,7 @@ def split_at_faults(
     number = {fault.name: k for k, fault in enumerate(found.faults)}
     out = np.asarray(left_out, int)
     block = np.full(len(points), -1)
-    block[kept], block[out] = found.block, _block_of(points.xyz[out], found)
+    block[kept], block[out] = found.block, _block_of(points.xyz[out], points.xyz[kept], found)
     notes = list(found.notes)
     homeless = [points.describe(int(i)) for i in out if block[i] < 0]
     if homeless:
@@ -107,11 +107,19 @@ def split_at_faults(
     return SplitHorizon(horizon, blocks if len(blocks) > 1 else {}, surfaces, tuple(notes))
 
 
-def _block_of(places: NDArray[np.float64], members: BlockMembers) -> NDArray[np.int64]:
-    """Return the number of the block on whose side places (n, 3) lie, -1 where there is none."""
+def _block_of(places: NDArray[np.float64], known: NDArray[np.float64], members: BlockMembers) -> NDArray[np.int64]:
+    """Return the number of the block to which places (n, 3) belong, -1 where there is none.
+
+    It lies on their side of the faults; of several, as in the arms of an area, it is that of the nearest known point.
+    """
     sides = np.array([fault.side(places) for fault in members.faults]).reshape(len(members.faults), len(places)).T
-    number = {side: k for k, side in enumerate(members.sides)}
-    return np.array([number.get(tuple(row), -1) for row in sides.tolist()], int)
+    found = np.full(len(places), -1)
+    for i, side in enumerate(map(tuple, sides.tolist())):
+        same = np.flatnonzero(np.isin(members.block, [k for k, one in enumerate(members.sides) if one == side]))
+        if len(same):
+            away = np.linalg.norm(known[same, :2] - places[i, :2], axis=1)
+            found[i] = members.block[same[away.argmin()]]
+    return found
 
 
 def same_side(parts: Mapping[str, Part], one: str, other: str) -> bool:

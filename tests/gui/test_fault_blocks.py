@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from faulted import ORIGIN, START, WAY, faulted_site, off, throw
+from faulted import ORIGIN, START, WAY, armed_site, faulted_site, off, throw
 
 from geofit import FitSettings
 from geofit.data.site import Orientations
@@ -129,6 +129,27 @@ def test_excluded_rows_stay_excluded_however_the_horizon_is_parted_and_can_be_in
     assert rows(document) == rows_of(points) - {first, second}
     IncludeRows(home, (first,)).redo(document)
     assert rows(document) == rows_of(points) - {second}
+
+
+def test_excluded_rows_belong_to_the_arm_in_which_they_lie():
+    document = opened(armed_site())
+    points = document.points("T2")
+    x, y = points.xyz[:, :2].T
+    arms = [x < 400, (x > 600) & (y < 400), (x > 600) & (y > 600)]
+    excluded = np.concatenate([np.flatnonzero(arm)[:8] for arm in arms])
+    ExcludeRows("T2", tuple(Row.of(points, int(i)) for i in excluded)).redo(document)
+    SplitAtFaults("T2", dict(part(document).blocks)).redo(document)
+    homes = [
+        {
+            name
+            for name in document.site.horizons
+            if Row.of(points, int(i)).find(document.site.horizons[name]) is not None
+        }
+        for i in range(len(points))
+    ]
+    found = [{name for i in np.flatnonzero(arm) for name in homes[i]} for arm in arms]
+    assert [len(names) for names in found] == [1, 1, 1]
+    assert len(set.union(*found)) == 3
 
 
 def test_excluded_rows_that_lie_in_no_block_are_told():

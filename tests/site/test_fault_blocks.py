@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 from faulted import (
     ACROSS,
+    ARMS,
     BOUNDARY,
     DIP,
     HEIGHT,
     ORIGIN,
     START,
     WAY,
+    armed_points,
     fault_points,
     faulted_site,
     horizon_points,
@@ -175,17 +177,6 @@ def test_a_site_states_which_fault_cuts_which_horizon():
         fit_faulted(site, "F1")
     with refused(InputError, "data.horizon-unknown", name="X"):
         fit_faulted(replace(site, faults={}), "X")
-
-
-ARMS = np.array([[0, 0], [1000, 0], [1000, 400], [400, 400], [400, 600], [1000, 600], [1000, 1000], [0, 1000.0]])
-
-
-def armed_points(keep=lambda x, y: np.full(len(x), True)):
-    """A horizon over an area of two arms, thrown by 20 m along a trace that cuts both."""
-    x, y = np.random.default_rng(11).uniform(0, 1000, (2, 240))
-    z = 20 * np.sin(x / 200) + 10 * np.cos(y / 150) - np.where(x > 450 + 0.1 * y, 20, 0)
-    mine = contains_xy(Polygon(ARMS), x, y) & keep(x, y)
-    return PointSet(np.column_stack([x, y, z])[mine])
 
 
 def test_each_arm_of_a_concave_area_has_a_surface_and_its_throw():
