@@ -29,7 +29,7 @@ from geofit.project.body_building import end_shape
 from geofit.project.body_commands import SetBody
 from geofit.project.body_record import BetweenHorizons, BodyRecord, BodyStyle, next_colour
 from geofit.project.document import Document
-from geofit.project.morph_run import FRAME_FORMATS, MorphRun
+from geofit.project.morph_run import FRAME_FORMATS, MorphRun, morph_files
 from geofit.project.morph_view import (
     MorphView,
     MorphWay,
@@ -46,8 +46,6 @@ __all__ = ["Morphing"]
 _LOG = logging.getLogger(__name__)
 #: Frames that are exported, the kind of film, and pictures of a film of the view.
 FRAMES, FILM, PICTURES = 25, "gif", 49
-#: What an export writes: endings of its files and folders.
-WRITTEN = (".pvd", "", "_stl", "_obj", ".glb", ".csv", f".{FILM}", ".json")
 
 
 class Morphing(QObject):
@@ -173,8 +171,8 @@ class Morphing(QObject):
         start, title, view = str(self._document.folder or ""), self.tr("Export frames"), self.view
         folder = QFileDialog.getExistingDirectory(self._window, title, start)
         if folder and view is not None:
-            stem = file_stems([name := _title(view)])[name]
-            if may_replace((Path(folder) / f"{stem}{end}" for end in WRITTEN), title, self._window):
+            written = morph_files(Path(folder), _title(view), film=FILM)
+            if may_replace(written, title, self._window):
                 self.export(Path(folder))
 
     def export(self, folder: Path, frames: int = FRAMES, film: str | None = FILM) -> None:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from geofit.morphing.sequence import Morph
     from geofit.morphing.table import FrameRow
 
-__all__ = ["FRAME_FORMATS", "MorphRun", "run_morph", "stratum_volumes"]
+__all__ = ["FRAME_FORMATS", "MorphRun", "morph_files", "run_morph", "stratum_volumes"]
 
 #: Columns of the table.
 COLUMNS = (
@@ -33,6 +33,8 @@ COLUMNS = (
 )  # fmt: skip
 #: Kinds of frame files.
 FRAME_FORMATS = ("pvd", "stl", "obj", "glb")
+#: What each of them writes next to each other, files and folders.
+_WRITTEN = {"pvd": (".pvd", ""), "stl": ("_stl",), "obj": ("_obj",), "glb": (".glb", ".glb.origin.txt")}
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,6 +160,13 @@ def run_morph(
     run = MorphRun(morph, rows, read_back, (figures, *files), strata)
     write_figures(run.figures(), figures)
     return run
+
+
+def morph_files(out: Path, name: str, formats: Sequence[str] = FRAME_FORMATS, film: str | None = "gif") -> list[Path]:
+    """Return the files and folders that :func:`run_morph` writes, without those of a STEP frame and of horizons."""
+    endings = [".csv", ".json", *(ending for kind in formats for ending in _WRITTEN[kind])]
+    stem = file_stems([name])[name]
+    return [out / f"{stem}{ending}" for ending in (*endings, *([] if film is None else [f".{film}"]))]
 
 
 def stratum_volumes(body: MorphBody, horizons: Mapping[str, CuttingSurface]) -> dict[str, float]:

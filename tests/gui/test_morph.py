@@ -17,6 +17,7 @@ from geofit.implicit.isosurface import isosurface
 from geofit.implicit.lattice import Lattice
 from geofit.io.export.triangles import write_ply
 from geofit.project.body_record import MorphFrame
+from geofit.project.morph_run import morph_files
 
 CENTRE = np.array([500900.0, 3100900.0, 1450.0])
 
@@ -143,6 +144,8 @@ def test_a_ball_becomes_a_ring_under_the_slider(bodies, tmp_path, monkeypatch):
     # Frames and table; no film, which needs no window to be right.
     bodies.morphing.export(tmp_path / "out", frames=3, film=None)
     bodies.idle()
+    written = morph_files(tmp_path / "out", "ball - ring", film=None)
+    assert sorted((tmp_path / "out").iterdir()) == sorted(written)
     assert {file.suffix for file in (tmp_path / "out").iterdir() if file.is_file()} >= {".pvd", ".glb", ".csv", ".json"}
     assert "not a record of the process" in bodies.window.statusBar().currentMessage()
     # Without one of its ends there is no way any more.
