@@ -204,3 +204,24 @@ def write_report(app, monkeypatch):
         app.qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
 
     return write
+
+
+@pytest.fixture
+def here(monkeypatch):
+    """Run tasks in a thread: a process of its own takes seconds to start."""
+    from geofit.gui.dialogs import task_dialog
+
+    monkeypatch.setattr(task_dialog, "run_in_process", task_dialog.run)
+
+
+@pytest.fixture
+def rock_volume(qtbot):
+    """The window of a rock volume."""
+    from geofit.gui.dialogs.rock_volume import RockVolumeDialog
+
+    dialog = RockVolumeDialog()
+    qtbot.addWidget(dialog)
+    dialog.show()
+    qtbot.waitExposed(dialog)
+    yield dialog
+    dialog.close()

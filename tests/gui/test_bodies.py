@@ -371,23 +371,6 @@ def test_export_writes_what_the_ending_says(with_ore, tmp_path, ending):
         assert read_body(tmp_path / "ore.ply").volume == pytest.approx(with_ore.document.body("ORE").mesh.volume)
 
 
-def test_a_mesh_in_other_units_is_not_drawn_and_one_inside_out_is_turned_with_a_warning(with_ore, tmp_path):
-    mesh = with_ore.document.body("ORE")
-    places = mesh.mesh.vertices + mesh.body.origin
-    for name, scale, turn in (("millimetres", 1000.0, 1), ("inward", 1.0, -1)):
-        rows = [f"v {x} {y} {z}" for x, y, z in (scale * places).tolist()]
-        rows += [f"f {a} {b} {c}" for a, b, c in (mesh.mesh.triangles[:, ::turn] + 1).tolist()]
-        (tmp_path / f"{name}.obj").write_text("\n".join(rows) + "\n", encoding="utf-8")
-        with_ore.bodies.take_mesh(tmp_path / f"{name}.obj")
-        with_ore.idle()
-        said = with_ore.panels.bodies.warning
-        assert said.isVisibleTo(with_ore.panels.bodies)
-        assert ("it is not drawn" in said.text) == (turn == 1)
-        assert ("point inwards" in said.text) == (turn == -1)
-        assert (f"body:{name}" in with_ore.panels.view.layers) == (turn == -1)
-        assert with_ore.document.body(name).volume == pytest.approx(scale**3 * mesh.mesh.volume)
-
-
 def test_a_closed_mesh_is_a_body_without_a_verdict(with_ore, tmp_path):
     with_ore.bodies.export("ORE", tmp_path / "lens.ply")
     with_ore.idle()

@@ -1,4 +1,4 @@
-"""Bodies in the window from outlines on sections and from picked points; a site that has bodies alone."""
+"""Bodies in the window from outlines on sections, picked points and meshes; a site that has bodies alone."""
 
 from __future__ import annotations
 
@@ -11,9 +11,14 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFileDialog
 
+from geofit.implicit import Sphere
+from geofit.implicit.isosurface import isosurface
+from geofit.implicit.lattice import Lattice
 from geofit.project.body_record import Intervals, Outlines, SurfacePicks
 
 PLACE = np.array([1400.0, 2600.0, 500.0])
+#: A place within the sample site, map coordinates.
+SITE = np.array([500900.0, 3100900.0, 1450.0])
 ANGLE = np.linspace(0, 2 * np.pi, 40, endpoint=False)
 
 
@@ -206,3 +211,19 @@ def test_the_files_of_a_site_of_bodies_alone_are_read_again(app, bodies_alone, t
     app.idle()
     assert app.window.bodies.showing.stale("ORE"), "it was made from the log as it was"
     assert app.failures == []
+
+
+def test_a_mesh_in_other_units_is_not_drawn_and_one_inside_out_is_turned_with_a_warning(opened, tmp_path):
+    ball = isosurface(Sphere([0, 0, 0], 30.0), Lattice.around([-36] * 3, [36] * 3, cells=30), capped=True)
+    for name, scale, turn in (("millimetres", 1000.0, 1), ("inward", 1.0, -1)):
+        rows = [f"v {x} {y} {z}" for x, y, z in (scale * (ball.vertices + SITE)).tolist()]
+        rows += [f"f {a} {b} {c}" for a, b, c in (ball.triangles[:, ::turn] + 1).tolist()]
+        (tmp_path / f"{name}.obj").write_text("\n".join(rows) + "\n", encoding="utf-8")
+        opened.bodies.take_mesh(tmp_path / f"{name}.obj")
+        opened.idle()
+        said = opened.panels.bodies.warning
+        assert said.isVisibleTo(opened.panels.bodies)
+        assert ("it is not drawn" in said.text) == (turn == 1)
+        assert ("point inwards" in said.text) == (turn == -1)
+        assert (f"body:{name}" in opened.panels.view.layers) == (turn == -1)
+        assert opened.document.body(name).volume == pytest.approx(scale**3 * ball.volume)

@@ -8,6 +8,7 @@ import weakref
 
 import numpy as np
 import pytest
+from chambers import chambers
 from PySide6.QtCore import QCoreApplication, QEvent, Qt, QTimer
 from PySide6.QtWidgets import QApplication, QDialogButtonBox, QLabel, QWidget
 
@@ -17,50 +18,24 @@ from geofit.gui.language import apply_language
 from geofit.gui.theme import apply_theme
 
 
-def chambers():
-    """Two chambers of 7 voxels and a channel of one, open at both ends of axis 2, and a closed chamber; 1 is rock."""
-    grains = np.ones((21, 9, 20), np.uint8)
-    grains[1:8, 1:8, :7] = grains[1:8, 1:8, 13:] = grains[4, 4] = 0
-    grains[12:17, 2:7, 5:11] = 0
-    return grains
+def read(qtbot, rock_volume, path):
+    before = rock_volume.volume
+    rock_volume.read(path)
+    qtbot.waitUntil(lambda: not rock_volume.running and rock_volume.volume is not before, timeout=30_000)
 
 
-@pytest.fixture
-def dialog(qtbot):
-    dialog = RockVolumeDialog()
-    qtbot.addWidget(dialog)
-    dialog.show()
-    qtbot.waitExposed(dialog)
-    yield dialog
-    dialog.close()
-
-
-@pytest.fixture
-def here(monkeypatch):
-    """Run tasks in a thread: a process of its own takes seconds to start."""
-    from geofit.gui.dialogs import task_dialog
-
-    monkeypatch.setattr(task_dialog, "run_in_process", task_dialog.run)
-
-
-def read(qtbot, dialog, path):
-    before = dialog.volume
-    dialog.read(path)
-    qtbot.waitUntil(lambda: not dialog.running and dialog.volume is not before, timeout=30_000)
-
-
-def find(qtbot, dialog, low=0, high=0, edge=2):
+def find(qtbot, rock_volume, low=0, high=0, edge=2):
     """State pore values and edge, and click; wait until pores or words are there."""
-    for box, value in ((dialog.low, low), (dialog.high, high), (dialog.edge, edge)):
+    for box, value in ((rock_volume.low, low), (rock_volume.high, high), (rock_volume.edge, edge)):
         box.setValue(value)
-    qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
-    qtbot.waitUntil(lambda: not dialog.running and bool(dialog.message.text()), timeout=120_000)
+    qtbot.mouseClick(rock_volume.go, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: not rock_volume.running and bool(rock_volume.message.text()), timeout=120_000)
 
 
-def found(qtbot, dialog, path):
-    read(qtbot, dialog, labels(path))
-    find(qtbot, dialog)
-    assert dialog.view is not None
+def found(qtbot, rock_volume, path):
+    read(qtbot, rock_volume, labels(path))
+    find(qtbot, rock_volume)
+    assert rock_volume.view is not None
 
 
 def labels(path):
@@ -68,111 +43,111 @@ def labels(path):
     return path
 
 
-def figures(dialog):
-    table = dialog.table.model()
+def figures(rock_volume):
+    table = rock_volume.table.model()
     return {table.index(r, 0).data(): table.index(r, 1).data() for r in range(table.rowCount())}
 
 
-def test_another_file_leaves_nothing_of_the_first_on_show(qtbot, dialog, tmp_path, here):
-    found(qtbot, dialog, tmp_path / "rock.npy")
-    assert figures(dialog)
-    assert dialog.key.text()
-    read(qtbot, dialog, labels(tmp_path / "second.npy"))
-    assert "second.npy" in dialog.windowTitle()
-    assert dialog.scene.shown == ()
-    assert figures(dialog) == {}
-    assert dialog.key.text() == ""
-    find(qtbot, dialog, 7, 7)
-    assert dialog.scene.shown == ()
-    assert figures(dialog) == {}
+def test_another_file_leaves_nothing_of_the_first_on_show(qtbot, rock_volume, tmp_path, here):
+    found(qtbot, rock_volume, tmp_path / "rock.npy")
+    assert figures(rock_volume)
+    assert rock_volume.key.text()
+    read(qtbot, rock_volume, labels(tmp_path / "second.npy"))
+    assert "second.npy" in rock_volume.windowTitle()
+    assert rock_volume.scene.shown == ()
+    assert figures(rock_volume) == {}
+    assert rock_volume.key.text() == ""
+    find(qtbot, rock_volume, 7, 7)
+    assert rock_volume.scene.shown == ()
+    assert figures(rock_volume) == {}
 
 
-def test_results_of_other_values_are_marked_until_the_values_are_theirs_again(qtbot, dialog, tmp_path, here):
-    found(qtbot, dialog, tmp_path / "rock.npy")
-    said = dialog.message.text()
+def test_results_of_other_values_are_marked_until_the_values_are_theirs_again(qtbot, rock_volume, tmp_path, here):
+    found(qtbot, rock_volume, tmp_path / "rock.npy")
+    said = rock_volume.message.text()
     assert said
-    assert not dialog.old.isVisible()
-    for box, other in ((dialog.high, 1), (dialog.edge, 3)):
+    assert not rock_volume.old.isVisible()
+    for box, other in ((rock_volume.high, 1), (rock_volume.edge, 3)):
         before = box.value()
         box.setValue(other)
-        assert dialog.old.isVisible()
-        assert "Find pores" in dialog.old.text
-        assert dialog.message.text() == ""
+        assert rock_volume.old.isVisible()
+        assert "Find pores" in rock_volume.old.text
+        assert rock_volume.message.text() == ""
         box.setValue(before)
-        assert not dialog.old.isVisible()
-        assert dialog.message.text() == said
-    find(qtbot, dialog, edge=3)
-    assert not dialog.old.isVisible()
-    assert dialog.message.text() == said
+        assert not rock_volume.old.isVisible()
+        assert rock_volume.message.text() == said
+    find(qtbot, rock_volume, edge=3)
+    assert not rock_volume.old.isVisible()
+    assert rock_volume.message.text() == said
 
 
 @pytest.mark.parametrize("largest", [1e-6, 0.01, 1.0, 255.0, 40_000.0])
-def test_limits_of_fractions_are_as_fine_as_the_values(qtbot, dialog, tmp_path, largest):
+def test_limits_of_fractions_are_as_fine_as_the_values(qtbot, rock_volume, tmp_path, largest):
     values = np.random.default_rng(5).beta(2, 2, (12, 13, 14)) * largest
     np.save(tmp_path / "grey.npy", values.astype(np.float32))
-    read(qtbot, dialog, tmp_path / "grey.npy")
-    volume = dialog.volume
-    assert dialog.high.value() == pytest.approx(volume.threshold, abs=1e-3 * largest)
-    assert volume.values.min() >= dialog.low.value() > volume.values.min() - 1e-3 * largest
+    read(qtbot, rock_volume, tmp_path / "grey.npy")
+    volume = rock_volume.volume
+    assert rock_volume.high.value() == pytest.approx(volume.threshold, abs=1e-3 * largest)
+    assert volume.values.min() >= rock_volume.low.value() > volume.values.min() - 1e-3 * largest
     share = 100 * (volume.values <= volume.threshold).mean()
-    assert float(dialog.porosity.text().split()[0]) == pytest.approx(share, abs=0.2)
-    assert largest / 1000 <= dialog.high.singleStep() <= largest / 10
+    assert float(rock_volume.porosity.text().split()[0]) == pytest.approx(share, abs=0.2)
+    assert largest / 1000 <= rock_volume.high.singleStep() <= largest / 10
 
 
 @pytest.mark.parametrize("value", [2**38, -7, 0.25])
-def test_limits_of_one_value_everywhere_step_by_one(qtbot, dialog, tmp_path, value):
+def test_limits_of_one_value_everywhere_step_by_one(qtbot, rock_volume, tmp_path, value):
     np.save(tmp_path / "one.npy", np.full((4, 5, 6), value))
-    read(qtbot, dialog, tmp_path / "one.npy")
-    qtbot.keyClick(dialog.low, Qt.Key.Key_Up)
-    assert dialog.low.value() <= value
-    dialog.low.setValue(value)
-    dialog.high.setValue(value)
-    assert dialog.porosity.text() == "100.00 %"
+    read(qtbot, rock_volume, tmp_path / "one.npy")
+    qtbot.keyClick(rock_volume.low, Qt.Key.Key_Up)
+    assert rock_volume.low.value() <= value
+    rock_volume.low.setValue(value)
+    rock_volume.high.setValue(value)
+    assert rock_volume.porosity.text() == "100.00 %"
 
 
 @pytest.mark.parametrize("kind", [np.uint8, np.int16, np.uint16])
-def test_limits_of_whole_numbers_are_whole_and_from_the_smallest(qtbot, dialog, tmp_path, kind):
+def test_limits_of_whole_numbers_are_whole_and_from_the_smallest(qtbot, rock_volume, tmp_path, kind):
     values = np.random.default_rng(5).integers(0, 200, (12, 13, 14)).astype(kind)
     if kind is np.int16:
         values -= 100
     np.save(tmp_path / "grey.npy", values)
-    read(qtbot, dialog, tmp_path / "grey.npy")
-    assert dialog.low.text() == str(values.min())
-    assert dialog.high.text() == str(int(np.floor(dialog.volume.threshold)))
-    assert dialog.porosity.text() == f"{100 * (values <= dialog.volume.threshold).mean():.2f} %"
+    read(qtbot, rock_volume, tmp_path / "grey.npy")
+    assert rock_volume.low.text() == str(values.min())
+    assert rock_volume.high.text() == str(int(np.floor(rock_volume.volume.threshold)))
+    assert rock_volume.porosity.text() == f"{100 * (values <= rock_volume.volume.threshold).mean():.2f} %"
 
 
-def test_up_begins_at_the_values_of_the_volume(qtbot, dialog, tmp_path):
+def test_up_begins_at_the_values_of_the_volume(qtbot, rock_volume, tmp_path):
     np.save(tmp_path / "labels.npy", chambers() + np.uint8(3))
-    read(qtbot, dialog, tmp_path / "labels.npy")
-    assert dialog.low.text() == dialog.high.text() == "not stated"
-    qtbot.keyClick(dialog.low, Qt.Key.Key_Up)
-    assert dialog.low.text() == "3"
-    qtbot.keyClick(dialog.low, Qt.Key.Key_Up)
-    assert dialog.low.text() == "4"
-    qtbot.keyClick(dialog.high, Qt.Key.Key_Up)
-    assert dialog.high.text() == "4", "no range ends below its start"
+    read(qtbot, rock_volume, tmp_path / "labels.npy")
+    assert rock_volume.low.text() == rock_volume.high.text() == "not stated"
+    qtbot.keyClick(rock_volume.low, Qt.Key.Key_Up)
+    assert rock_volume.low.text() == "3"
+    qtbot.keyClick(rock_volume.low, Qt.Key.Key_Up)
+    assert rock_volume.low.text() == "4"
+    qtbot.keyClick(rock_volume.high, Qt.Key.Key_Up)
+    assert rock_volume.high.text() == "4", "no range ends below its start"
 
 
 def test_the_upper_limit_is_not_called_as_a_depth_is(qtbot):
     apply_language("zh_CN")
     try:
-        dialog = RockVolumeDialog()
-        qtbot.addWidget(dialog)
-        assert "终点深度" not in {label.text() for label in dialog.findChildren(QLabel)}
-        dialog.close()
+        rock_volume = RockVolumeDialog()
+        qtbot.addWidget(rock_volume)
+        assert "终点深度" not in {label.text() for label in rock_volume.findChildren(QLabel)}
+        rock_volume.close()
     finally:
         apply_language("en")
 
 
 @pytest.mark.parametrize("file", ["odd.raw", "odd.raw.gz"])
-def test_shape_and_type_of_a_raw_file_are_asked_for(qtbot, dialog, tmp_path, file):
+def test_shape_and_type_of_a_raw_file_are_asked_for(qtbot, rock_volume, tmp_path, file):
     values = np.arange(4 * 5 * 7, dtype=">u2").reshape(4, 5, 7)
     content = values.tobytes()
     (tmp_path / file).write_bytes(gzip.compress(content) if file.endswith("gz") else content)
-    dialog.read(tmp_path / file)
-    qtbot.waitUntil(lambda: dialog.raw is not None and not dialog.running, timeout=30_000)
-    form = dialog.raw
+    rock_volume.read(tmp_path / file)
+    qtbot.waitUntil(lambda: rock_volume.raw is not None and not rock_volume.running, timeout=30_000)
+    form = rock_volume.raw
     assert form.isVisible()
     assert "280 bytes" in form.message.text()
     assert "dtype" not in form.message.text()
@@ -184,55 +159,55 @@ def test_shape_and_type_of_a_raw_file_are_asked_for(qtbot, dialog, tmp_path, fil
     form.big_endian.setChecked(True)
     qtbot.mouseClick(accept, Qt.MouseButton.LeftButton)
     # Wrong counts: the reader's error, and the same form once more.
-    qtbot.waitUntil(lambda: dialog.raw not in (None, form) and not dialog.running, timeout=30_000)
-    again = dialog.raw
+    qtbot.waitUntil(lambda: rock_volume.raw not in (None, form) and not rock_volume.running, timeout=30_000)
+    again = rock_volume.raw
     assert "need 320" in again.message.text()
     assert [box.value() for box in again.counts] == [4, 5, 8]
     assert again.stated == ((4, 5, 8), ">u2")
     again.counts[2].setValue(7)
     again.accept()
-    qtbot.waitUntil(lambda: not dialog.running and dialog.volume is not None, timeout=30_000)
-    np.testing.assert_array_equal(dialog.volume.values, values)
-    assert dialog.raw is None
-    assert file in dialog.windowTitle()
+    qtbot.waitUntil(lambda: not rock_volume.running and rock_volume.volume is not None, timeout=30_000)
+    np.testing.assert_array_equal(rock_volume.volume.values, values)
+    assert rock_volume.raw is None
+    assert file in rock_volume.windowTitle()
 
 
-def test_pores_of_a_raw_file_whose_shape_was_stated_are_found(qtbot, dialog, tmp_path, here):
+def test_pores_of_a_raw_file_whose_shape_was_stated_are_found(qtbot, rock_volume, tmp_path, here):
     (tmp_path / "odd.raw").write_bytes(chambers().tobytes())
-    dialog.read(tmp_path / "odd.raw", chambers().shape, "u1")
-    qtbot.waitUntil(lambda: not dialog.running and dialog.volume is not None, timeout=30_000)
-    find(qtbot, dialog)
-    assert figures(dialog)["pores, throats"] == "2, 1"
+    rock_volume.read(tmp_path / "odd.raw", chambers().shape, "u1")
+    qtbot.waitUntil(lambda: not rock_volume.running and rock_volume.volume is not None, timeout=30_000)
+    find(qtbot, rock_volume)
+    assert figures(rock_volume)["pores, throats"] == "2, 1"
 
 
-def test_a_raw_file_is_left_alone_where_its_shape_is_not_stated(qtbot, dialog, tmp_path):
+def test_a_raw_file_is_left_alone_where_its_shape_is_not_stated(qtbot, rock_volume, tmp_path):
     (tmp_path / "odd.raw").write_bytes(bytes(280))
-    dialog.read(tmp_path / "odd.raw")
-    qtbot.waitUntil(lambda: dialog.raw is not None and not dialog.running, timeout=30_000)
-    dialog.raw.reject()
-    assert dialog.raw is None
-    assert "odd.raw" in dialog.message.text()
-    assert "dtype" not in dialog.message.text()
-    assert dialog.volume is None
+    rock_volume.read(tmp_path / "odd.raw")
+    qtbot.waitUntil(lambda: rock_volume.raw is not None and not rock_volume.running, timeout=30_000)
+    rock_volume.raw.reject()
+    assert rock_volume.raw is None
+    assert "odd.raw" in rock_volume.message.text()
+    assert "dtype" not in rock_volume.message.text()
+    assert rock_volume.volume is None
 
 
 @pytest.mark.parametrize(("file", "content"), [("a.raw", b""), ("a.mha", None)])
-def test_no_shape_is_asked_for_that_would_not_help(qtbot, dialog, tmp_path, file, content):
+def test_no_shape_is_asked_for_that_would_not_help(qtbot, rock_volume, tmp_path, file, content):
     path = tmp_path / file
     if content is None:
         path = anisotropic(path)
         content = path.read_bytes()[:-7]
     path.write_bytes(content)
-    dialog.read(path)
-    qtbot.waitUntil(lambda: not dialog.running and bool(dialog.message.text()), timeout=30_000)
-    assert dialog.raw is None
-    assert "dtype" not in dialog.message.text()
+    rock_volume.read(path)
+    qtbot.waitUntil(lambda: not rock_volume.running and bool(rock_volume.message.text()), timeout=30_000)
+    assert rock_volume.raw is None
+    assert "dtype" not in rock_volume.message.text()
 
 
-def test_values_that_no_voxel_has_are_named_as_they_were_stated(qtbot, dialog, tmp_path, here):
-    read(qtbot, dialog, labels(tmp_path / "rock.npy"))
-    find(qtbot, dialog, 4, 6)
-    text = dialog.message.text()
+def test_values_that_no_voxel_has_are_named_as_they_were_stated(qtbot, rock_volume, tmp_path, here):
+    read(qtbot, rock_volume, labels(tmp_path / "rock.npy"))
+    find(qtbot, rock_volume, 4, 6)
+    text = rock_volume.message.text()
     assert "from 4 to 6" in text
     assert "from 0 to 1" in text
     assert "True" not in text
@@ -258,29 +233,29 @@ def test_a_window_that_is_closed_goes_with_its_volume(qtbot, tmp_path):
     assert gone[0]() is None
 
 
-def test_the_scene_follows_the_theme(qtbot, qapp, dialog, tmp_path, here):
-    found(qtbot, dialog, tmp_path / "rock.npy")
+def test_the_scene_follows_the_theme(qtbot, qapp, rock_volume, tmp_path, here):
+    found(qtbot, rock_volume, tmp_path / "rock.npy")
     try:
         for theme, dark in (("dark", True), ("light", False), ("dark", True)):
             apply_theme(qapp, theme)
             qtbot.wait(20)
-            assert dialog.scene.dark == dark
-            assert (max(dialog.scene.canvas.renderer.GetBackground()) < 0.3) == dark
+            assert rock_volume.scene.dark == dark
+            assert (max(rock_volume.scene.canvas.renderer.GetBackground()) < 0.3) == dark
     finally:
         apply_theme(qapp, "light")
 
 
 @pytest.mark.parametrize("size", [(1180, 760), (1180, 1000)])
-def test_all_that_is_drawn_is_in_the_picture(qtbot, dialog, tmp_path, here, size):
-    dialog.resize(*size)
+def test_all_that_is_drawn_is_in_the_picture(qtbot, rock_volume, tmp_path, here, size):
+    rock_volume.resize(*size)
     # An eighth of a ball at each corner: most of each ball that is drawn is outside the sample.
     from_corner = np.minimum(np.arange(21), np.arange(21)[::-1])
     squares = sum(axis.astype(float) ** 2 for axis in np.meshgrid(*[from_corner] * 3))
     np.save(tmp_path / "pore.npy", (squares > 81).astype(np.uint8))
-    read(qtbot, dialog, tmp_path / "pore.npy")
-    find(qtbot, dialog)
-    canvas = dialog.scene.canvas
-    for actor in dialog.scene.actors.values():
+    read(qtbot, rock_volume, tmp_path / "pore.npy")
+    find(qtbot, rock_volume)
+    canvas = rock_volume.scene.canvas
+    for actor in rock_volume.scene.actors.values():
         places = canvas.projector().screen(actor.mapper.dataset.points)[:, :2]
         assert (places >= 0).all()
         assert (places <= [canvas.width(), canvas.height()]).all()
@@ -294,29 +269,29 @@ def anisotropic(path, spacing="0.001 0.001 0.002", values=None):
     return path
 
 
-def test_edges_that_the_file_states_are_shown_and_not_asked_for(qtbot, dialog, tmp_path):
-    read(qtbot, dialog, anisotropic(tmp_path / "a.mha"))
-    assert dialog.edges.isVisible()
-    assert "2.000 × 1.000 × 1.000 µm" in dialog.edges.text()
-    assert "pore" in dialog.message.text()
-    assert "edge" not in dialog.message.text()
-    dialog.edge.setValue(4.0)
-    assert "4.000 × 2.000 × 2.000 µm" in dialog.edges.text()
+def test_edges_that_the_file_states_are_shown_and_not_asked_for(qtbot, rock_volume, tmp_path):
+    read(qtbot, rock_volume, anisotropic(tmp_path / "a.mha"))
+    assert rock_volume.edges.isVisible()
+    assert "2.000 × 1.000 × 1.000 µm" in rock_volume.edges.text()
+    assert "pore" in rock_volume.message.text()
+    assert "edge" not in rock_volume.message.text()
+    rock_volume.edge.setValue(4.0)
+    assert "4.000 × 2.000 × 2.000 µm" in rock_volume.edges.text()
     grey = np.random.default_rng(1).integers(0, 200, (5, 6, 7)).astype(np.uint8)
-    read(qtbot, dialog, anisotropic(tmp_path / "b.mha", "0.001 0.001 0.001", grey))
-    assert not dialog.edges.isVisible()
-    assert "Otsu" in dialog.message.text()
-    assert "edge" not in dialog.message.text()
+    read(qtbot, rock_volume, anisotropic(tmp_path / "b.mha", "0.001 0.001 0.001", grey))
+    assert not rock_volume.edges.isVisible()
+    assert "Otsu" in rock_volume.message.text()
+    assert "edge" not in rock_volume.message.text()
 
 
-def test_edges_that_are_no_lengths_are_asked_for(qtbot, dialog, tmp_path, here):
-    read(qtbot, dialog, anisotropic(tmp_path / "a.mha", "0 0 -1"))
-    assert "edge" in dialog.message.text()
-    assert not dialog.edges.isVisible()
-    find(qtbot, dialog)
+def test_edges_that_are_no_lengths_are_asked_for(qtbot, rock_volume, tmp_path, here):
+    read(qtbot, rock_volume, anisotropic(tmp_path / "a.mha", "0 0 -1"))
+    assert "edge" in rock_volume.message.text()
+    assert not rock_volume.edges.isVisible()
+    find(qtbot, rock_volume)
 
 
 @pytest.mark.parametrize(("millimetres", "text"), [("0.0000043", "0.004300 µm"), ("0.0652", "65.200 µm")])
-def test_an_edge_that_the_file_states_is_not_rounded_away(qtbot, dialog, tmp_path, millimetres, text):
-    read(qtbot, dialog, anisotropic(tmp_path / "a.mha", " ".join([millimetres] * 3)))
-    assert dialog.edge.text() == text
+def test_an_edge_that_the_file_states_is_not_rounded_away(qtbot, rock_volume, tmp_path, millimetres, text):
+    read(qtbot, rock_volume, anisotropic(tmp_path / "a.mha", " ".join([millimetres] * 3)))
+    assert rock_volume.edge.text() == text

@@ -59,14 +59,6 @@ def tube(tmp_path):
 
 
 @pytest.fixture
-def here(monkeypatch):
-    """Run tasks in a thread: a process of its own takes seconds to start."""
-    from geofit.gui.dialogs import task_dialog
-
-    monkeypatch.setattr(task_dialog, "run_in_process", task_dialog.run)
-
-
-@pytest.fixture
 def horizons():
     return {}
 
