@@ -37,8 +37,7 @@ test: .venv/.installed-all
 	@$(MAKE) --keep-going $(PARTS)
 
 # Exit code 5: where no window can open, every test of them is skipped. From 128 on a signal ended the process: Qt, VTK or
-# the OpenGL driver crashed, and the dump above says where. Once in dozens of runs that is a matter of chance; a crash
-# that comes again fails.
+# the OpenGL driver crashed, and the dump above says where. The tests run once more; a second crash fails.
 test-windows: .venv/.installed-all
 	$(BIN)/python -m pytest $(WINDOWS) || case $$? in \
 		5) ;; \

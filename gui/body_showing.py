@@ -151,10 +151,10 @@ class BodyShowing(QObject):
             return ()
         text = message(
             "gui.body-far-from-site",
-            "The body lies {away:.0f} m from the data of the site, which extend over {reach:.0f} m: it is not drawn. "
+            "The body lies {away} m from the data of the site, which extend over {reach} m: it is not drawn. "
             "Check the unit and the coordinate system of its file; coordinates are read as metres.",
-            away=away,
-            reach=reach,
+            away=round(away),
+            reach=round(reach),
         )
         return (text.with_severity("warning"),)
 

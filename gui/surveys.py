@@ -68,7 +68,7 @@ class Surveys(QObject):
         self._activity.prepare(title, lambda: (passage_mesh, (run, self._free_file(run))), on_done=added)
 
     def _free_file(self, run: CaveRun) -> Path:
-        """Return a file beside the site that nothing has and no body is made from."""
+        """Return a new file beside the site; a missing one that a body is made from is not taken either."""
         name = Path(run.adjusted.survey.name).stem
         folder, stem = self._document.folder or Path.cwd(), f"{file_stems([name])[name]}_passages"
         site = self._document.site_folder or folder

@@ -50,7 +50,7 @@ SHARES = (10, 50, 90)
 class PoresFindings:
     """Everything that a chapter says of a rock volume; ``balls`` counts its maximal balls.
 
-    ``surface_note`` says what the triangles of the surface have more or less than the voxels, if it is much.
+    ``surface_note`` says by how much the volume within the triangles differs from that of the voxels, if it is much.
     """
 
     name: str

@@ -57,8 +57,8 @@ class SurveyDialog(SceneDialog):
     can_add : callable
         Whether a site is open that can take the body.
 
-    ``adjusted`` and ``run`` hold the survey and its body; None before. A body whose wall distance is no longer that of
-    the field is out of date: it is not cut, written or added until it is made again.
+    ``adjusted`` and ``run`` hold the survey and its body; None before. A change of the wall distance puts the body out
+    of date: it is not cut, written or added until it is made again.
     """
 
     scene: CaveScene
@@ -322,7 +322,7 @@ class SurveyDialog(SceneDialog):
 
     def _show_table(self, name: str, columns: Sequence[TableColumn]) -> None:
         self.tables[name].show_columns(columns)
-        # Empty tables are hidden: there are no loops, missing walls, strata or unused rows to list.
+        # An empty table has nothing to tell.
         self.tabs.setTabVisible(self.tabs.indexOf(self.tables[name]), len(columns[0].values) > 0)
 
     def _show_rows(self, issues: Sequence[ImportIssue], refused: str = "") -> None:
