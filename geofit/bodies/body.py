@@ -125,7 +125,17 @@ class BodyFit(ImplicitBody):
 
     @cached_property
     def _shown(self) -> tuple[Extent, TriangleMesh]:
-        return self._measured(self.local_mesh(self.overview_spacing))
+        return self._measured(self._first)
+
+    @cached_property
+    def _first(self) -> TriangleMesh:
+        """Triangles of cells of :attr:`overview_spacing`, which look for the surface everywhere."""
+        return self.local_mesh(self.overview_spacing)
+
+    def _known_surface(self, spacing: float) -> Floats | None:
+        if spacing >= self.overview_spacing:
+            return None
+        return np.concatenate([self._first.vertices, self.data.contacts - self.origin])
 
     @property
     def size(self) -> Extent:

@@ -235,7 +235,11 @@ class ImplicitBody:
         counts = np.maximum(np.ceil((upper - lower) / spacing).astype(int), 1) + 4
         start = (lower + upper) / 2 - counts * spacing / 2
         lattice = Lattice(start, spacing, (int(counts[0]) + 1, int(counts[1]) + 1, int(counts[2]) + 1))
-        return isosurface(self.field, lattice, capped=True)
+        return isosurface(self.field, lattice, capped=True, near=self._known_surface(spacing))
+
+    def _known_surface(self, spacing: float) -> Floats | None:
+        """Return places (n, 3) about the local origin from which cells of an edge follow the surface; None: all do."""
+        return None
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name}>"

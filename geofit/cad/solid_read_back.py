@@ -88,6 +88,7 @@ def read_back_body(
     product = read_shapes(target)[0]
     shape = product.shape
     faces = faces_of(shape)
+    lacking: tuple[Check, ...] = ()
     solids = list(explore(shape, TopAbs_SOLID))
     if trimmed:
         # Places of the faces themselves: beyond its trims a surface is none of the body's.
@@ -115,6 +116,7 @@ def read_back_body(
             residuals = np.abs(nearest_on_mesh(_joined(meshes), body.contacts - body.origin).distance)
         volume = sum(mesh.volume for mesh in meshes)
         free = sum(len(mesh.boundary_edges) for mesh in meshes)
+        lacking = _thin_parts(residuals, meshes)
     slope = np.linalg.norm(body.field.gradient(places), axis=1)
     deviation = float((np.abs(body.field.value(places)) / np.maximum(slope, 1e-300)).max())
     tolerances = ShapeAnalysis_ShapeTolerance()
@@ -174,6 +176,7 @@ def read_back_body(
             ),
         ),
         _sigma_check(sigma, epsilon, nurbs=nurbs, cut=trimmed),
+        *lacking,
         Check(
             "volume",
             apart <= limit,
@@ -248,6 +251,31 @@ def _sigma_check(sigma: float, epsilon: float, *, nurbs: bool, cut: bool) -> Che
         else message("cad.body-without-contacts", "The body has no contacts to compare with the faces of the file")
     )
     return Check("sigma", None, sigma, epsilon, "m", text)
+
+
+def _thin_parts(residuals: Floats, meshes: Sequence[TriangleMesh]) -> tuple[Check, ...]:
+    """Return a note if contacts lie farther from all triangles than those are long: nothing of the body is near them.
+
+    A logged interval makes a part of its own where no other hole has the rock; if it is thinner than the cells, their
+    nodes do not see it.
+    """
+    corners = np.concatenate([mesh.corners for mesh in meshes])
+    length = float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).mean())
+    count = int((residuals > length).sum())
+    if not count:
+        return ()
+    text = plural_message(
+        "cad.contacts-without-triangles",
+        "{count} of {all} contacts lies more than {length:.3g} m from the triangles of the file ({most:.3g} m): a part "
+        "of the body that is thinner than their cells has no triangles",
+        "{count} of {all} contacts lie more than {length:.3g} m from the triangles of the file (up to {most:.3g} m): "
+        "parts of the body that are thinner than their cells have no triangles",
+        count=count,
+        all=len(residuals),
+        length=length,
+        most=float(residuals.max()),
+    )
+    return (Check("thin parts", None, float(count), 0.0, "1", text),)
 
 
 def _joined(meshes: Sequence[TriangleMesh]) -> Mesh:

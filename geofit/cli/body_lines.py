@@ -37,7 +37,7 @@ def body_lines(run: BodyRun) -> BodyLines:
 
     a, volumes, file = run.accuracy, run.volumes, run.read_back
     sound = not run.failed_checks
-    reasons = [str(check.text) for check in file.checks if check.name == "grade"]
+    reasons = [str(check.text) for check in file.checks if check.name in ("grade", "thin parts")]
     rows = (
         ("verdict", run.verdict.word if sound or not a.passed else f"{run.verdict.word} (!)"),
         ("contacts", str(a.n)),

@@ -263,6 +263,7 @@ TERMS: frozenset[str] = frozenset(
         "tape",
         "the map",
         "the site file",
+        "thin parts",
         "thin plate",
         "throats",
         "to",

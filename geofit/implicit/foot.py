@@ -131,17 +131,19 @@ def signed_distance(field: Field, xyz: ArrayLike, mesh: TriangleMesh | None = No
 def project_along_gradient(field: Field, xyz: ArrayLike, *, reach: float = np.inf, steps: int = 6) -> Floats:
     """Return points moved onto the surface by Newton steps along the gradient, none longer than ``reach`` metres.
 
-    At most ``steps`` are made, and none after one that hardly moves any point: where the gradient does not vanish, the
-    next would be about as long as its square.
+    At most ``steps`` are made for a point, and none after one that hardly moves it: where the gradient does not vanish,
+    the next would be about as long as its square.
     """
     x = points_of(xyz).copy()
     still = STILL * float(np.ptp(x, axis=0).max()) if len(x) else 0.0
+    moving = np.arange(len(x))
     for _ in range(steps):
-        g = field.gradient(x)
+        g = field.gradient(x[moving])
         square = (g**2).sum(axis=1)
-        step = -(field.value(x) / np.where(square > 0, square, 1.0))[:, None] * g
+        step = -(field.value(x[moving]) / np.where(square > 0, square, 1.0))[:, None] * g
         size = np.linalg.norm(step, axis=1)
-        x += step * np.minimum(1, reach / np.where(size > 0, size, 1.0))[:, None]
-        if size.max(initial=0.0) <= still:
+        x[moving] += step * np.minimum(1, reach / np.where(size > 0, size, 1.0))[:, None]
+        moving = moving[size > still]
+        if not len(moving):
             break
     return x

@@ -3,7 +3,9 @@
 Lorensen & Cline's two steps, cells of a lattice and polygons in each cell, here by VTK's flying edges. It sees only the
 signs of the nodes; a vertex is then the root of the field on its edge of the lattice, so that it lies on the surface to
 rounding, stays in its cell, and is the same whether its block or the whole lattice is polygonised. Blocks in which the
-field is known to keep its sign (:func:`geofit.implicit.field.range_in`) are not evaluated.
+field is known to keep its sign (:func:`geofit.implicit.field.range_in`) are not evaluated. Where places of the surface
+are known, only blocks to which it leads from there are (Wyvill, McPheeters & Wyvill, *Data structure for soft objects*,
+1986: continuation).
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ from geofit.data.errors import FitError, SettingsError
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.implicit.clean import collapse_slivers
-from geofit.implicit.field import Field, range_in
+from geofit.implicit.field import Field, points_of, range_in
 from geofit.implicit.lattice import BATCH, Lattice
 from geofit.implicit.mesh import TriangleMesh
 from geofit.implicit.roots import roots_between
@@ -37,7 +39,9 @@ SIDES = ("-x", "+x", "-y", "+y", "-z", "+z")
 
 
 @arguments_checked
-def isosurface(field: Field, lattice: Lattice, *, capped: bool = False, slivers: bool = False) -> TriangleMesh:
+def isosurface(
+    field: Field, lattice: Lattice, *, capped: bool = False, slivers: bool = False, near: Floats | None = None
+) -> TriangleMesh:
     """Return the surface on which a field is zero.
 
     Parameters
@@ -51,6 +55,9 @@ def isosurface(field: Field, lattice: Lattice, *, capped: bool = False, slivers:
         :func:`open_sides` names the sides.
     slivers : bool
         Leave triangles without area in the mesh: enough where only its volume and area are wanted.
+    near : (n, 3) array, optional
+        Places on or near every part of the surface: it is followed from there, and looked for nowhere else. Fine
+        lattices have few cells with surface, and a field without bounds would be evaluated in all.
 
     Returns
     -------
@@ -62,15 +69,12 @@ def isosurface(field: Field, lattice: Lattice, *, capped: bool = False, slivers:
     FitError
         If the field is NaN at a node.
     """
-    blocks = _blocks_with_surface(field, lattice, capped)
-    values = np.full((len(blocks), BLOCK + 1, BLOCK + 1, BLOCK + 1), np.inf)
-    batch = max(1, BATCH // (BLOCK + 1) ** 3)
-    for first in range(0, len(blocks), batch):
-        nodes = _nodes(blocks[first : first + batch])
-        part = np.full(nodes.shape[:-1], np.inf)
-        inside = _inside(blocks[first : first + batch], lattice)
-        part[inside] = field.value(lattice.origin + lattice.spacing * nodes[inside])
-        values[first : first + batch] = part
+    open_to = _may_hold_surface(field, lattice, capped)
+    if near is None:
+        blocks = BLOCK * np.argwhere(open_to) - int(capped)
+        values = _samples(field, lattice, blocks)
+    else:
+        blocks, values = _followed(field, lattice, capped, open_to, points_of(near))
     crossed = _crossings(values, blocks, np.array(lattice.shape) - 1 + int(capped))
     start = lattice.origin + lattice.spacing * crossed.node
     share = np.where(np.isinf(crossed.low), 1.0, 0.0)
@@ -191,8 +195,8 @@ def _inside(blocks: Ints, lattice: Lattice) -> NDArray[np.bool_]:
     return np.asarray(has[:, 2, :, None, None] & has[:, 1, None, :, None] & has[:, 0, None, None, :])
 
 
-def _blocks_with_surface(field: Field, lattice: Lattice, capped: bool) -> Ints:
-    """First nodes of the blocks that may hold both signs, (k, 3), in the order of the lattice."""
+def _may_hold_surface(field: Field, lattice: Lattice, capped: bool) -> NDArray[np.bool_]:
+    """Return which blocks along x, y and z may hold both signs; the first begins a node early if the body is capped."""
     first, extra = (-1, 2) if capped else (0, 0)
     counts = [-(-(n - 1 + extra) // BLOCK) for n in lattice.shape]
     blocks = first + BLOCK * np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, 3)
@@ -204,7 +208,53 @@ def _blocks_with_surface(field: Field, lattice: Lattice, capped: bool) -> Ints:
         outer = ((blocks < 0) | (blocks + BLOCK > last)).any(axis=1)
         highest = np.where(outer, np.inf, highest)
     # Written so that NaN keeps a block: it is reported where it is evaluated.
-    return np.asarray(blocks[~((lowest > 0) | (highest < 0))])
+    return np.asarray(~((lowest > 0) | (highest < 0))).reshape(counts)
+
+
+def _samples(field: Field, lattice: Lattice, blocks: Ints) -> Floats:
+    """Return the field at the nodes of blocks, (k, 9, 9, 9), x fastest; infinite where the lattice has no node."""
+    values = np.full((len(blocks), BLOCK + 1, BLOCK + 1, BLOCK + 1), np.inf)
+    batch = max(1, BATCH // (BLOCK + 1) ** 3)
+    for first in range(0, len(blocks), batch):
+        nodes = _nodes(blocks[first : first + batch])
+        part = np.full(nodes.shape[:-1], np.inf)
+        inside = _inside(blocks[first : first + batch], lattice)
+        part[inside] = field.value(lattice.origin + lattice.spacing * nodes[inside])
+        values[first : first + batch] = part
+    return values
+
+
+def _followed(
+    field: Field, lattice: Lattice, capped: bool, open_to: NDArray[np.bool_], near: Floats
+) -> tuple[Ints, Floats]:
+    """Return the blocks that hold the places, and those to which a change of sign leads from them, with their nodes.
+
+    A surface leaves a block where a side of it has nodes of both signs. The order is that of the lattice.
+    """
+    at = (near - lattice.origin) / lattice.spacing + int(capped)
+    waiting = np.zeros(open_to.shape, bool)
+    for shift in np.ndindex(2, 2, 2):  # the surface may lie on either side of a place, a cell away
+        block = ((at + 2 * np.array(shift) - 1) // BLOCK).astype(int)
+        waiting[tuple(np.clip(block, 0, np.array(open_to.shape) - 1).T)] = True
+    left, found, samples = open_to.copy(), [], []
+    while len(index := np.argwhere(waiting & left)):
+        left &= ~waiting
+        values = _samples(field, lattice, BLOCK * index - int(capped))
+        found.append(index)
+        samples.append(values)
+        waiting = np.zeros(open_to.shape, bool)
+        for axis in range(3):
+            for side, step in ((0, -1), (BLOCK, 1)):
+                nodes = values.take(side, axis=3 - axis).reshape(len(values), -1)
+                leads = ((nodes < 0).any(axis=1)) & ((nodes >= 0).any(axis=1))
+                next_to = index[leads] + step * np.eye(3, dtype=int)[axis]
+                next_to = next_to[(next_to[:, axis] >= 0) & (next_to[:, axis] < open_to.shape[axis])]
+                waiting[tuple(next_to.T)] = True
+    if not found:
+        return np.zeros((0, 3), np.int64), _samples(field, lattice, np.zeros((0, 3), np.int64))
+    blocks, values = np.concatenate(found), np.concatenate(samples)
+    order = np.lexsort(blocks.T[::-1])
+    return BLOCK * blocks[order] - int(capped), values[order]
 
 
 def _crossings(values: NDArray[np.floating], blocks: Ints, end: Ints | None) -> _Crossed:

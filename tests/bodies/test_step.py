@@ -14,6 +14,7 @@ import geofit.implicit as implicit
 from bodies.planted import ORIGIN, drilled, ellipsoid
 from bodies.shapes import KINDS, horn
 from geofit.bodies.body import BodyFit
+from geofit.bodies.data import BodyData
 from geofit.bodies.dual import dual_quads
 from geofit.bodies.fit import fit_body
 from geofit.bodies.implicit_body import OwnField
@@ -74,6 +75,27 @@ class LargeCells(OwnField):
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """A box somewhat larger than the ring."""
         return np.array([-60.0, -60.0, -6.0]), np.array([60.0, 60.0, 6.0])
+
+
+@pytest.mark.parametrize(("length", "lacking"), [(0.3, 2), (30.0, 0)])
+def test_contacts_of_a_part_thinner_than_the_cells_are_counted(length: float, lacking: int, tmp_path: Path) -> None:
+    """Sigma of a file was stated with "flat triangles cut curves short" where triangles were missing altogether."""
+    known = drilled(ellipsoid((0.25, 0.25, 0.2), (-0.5, -0.5, 0.0))[0], 3, rows=9)
+    hole = ORIGIN + np.array([70.0, 70.0, 0.0])
+    depth = np.arange(-60.0, 60.0, 0.1)[:, None] * [0, 0, 1]
+    inside = np.abs(depth[:, 2]) < length / 2
+    data = BodyData(
+        np.concatenate([known.contacts, hole + np.array([[0, 0, -length / 2], [0, 0, length / 2]])]),
+        np.concatenate([known.inside, hole + depth[inside]]),
+        np.concatenate([known.outside, hole + depth[~inside]]),
+    )
+    body = fit_body(data)
+    assert body.accuracy is not None
+    assert body.accuracy.sigma < 1e-6
+    found = body.write_step(tmp_path / "body.step", nurbs=False)
+    notes = [check for check in found.checks if check.name == "thin parts"]
+    assert [check.value for check in notes] == [lacking] * (lacking > 0)
+    assert all(f"{lacking} of {len(data.contacts)} contacts lie" in str(check.text) for check in notes)
 
 
 def test_triangles_that_lose_a_part_of_the_volume_fail(tmp_path: Path) -> None:

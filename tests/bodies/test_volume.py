@@ -7,12 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from bodies.planted import ORIGIN, SIZE, drilled, plate, torus
+from bodies.planted import ORIGIN, SIZE, drilled, pair, plate, torus
 from geofit.bodies.fit import fit_body
 from geofit.bodies.implicit_body import OwnField
 from geofit.bodies.simulate import volumes_of
 from geofit.implicit.distance import Torus
 from geofit.implicit.field import Field
+from geofit.implicit.isosurface import isosurface
+from geofit.implicit.lattice import Lattice
 from geofit.implicit.quadric import ellipsoid
 
 
@@ -81,6 +83,19 @@ def test_a_plate_thinner_than_the_raster_has_its_whole_extent_volume_and_overvie
     assert abs(body.size.volume - volume) < body.size.volume_error + 0.05 * volume
     assert body.overview.is_closed
     assert body.overview.volume == pytest.approx(body.size.volume, rel=0.02)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_smaller_cells_follow_every_part_of_the_surface(seed: int) -> None:
+    body = fit_body(drilled(pair()[0], seed, rows=9))
+    spacing = body.overview_spacing / 2
+    field, lower, upper = body.field, *body.extent
+    counts = np.maximum(np.ceil((upper - lower) / spacing).astype(int), 1) + 4
+    lattice = Lattice((lower + upper) / 2 - counts * spacing / 2, spacing, tuple((counts + 1).tolist()))
+    everywhere, mesh = isosurface(field, lattice, capped=True), body.local_mesh(spacing)
+    assert mesh.components == everywhere.components == 2
+    assert mesh.vertices.tobytes() == everywhere.vertices.tobytes()
+    assert mesh.triangles.tobytes() == everywhere.triangles.tobytes()
 
 
 def test_volumes_of_a_body_that_was_not_simulated() -> None:

@@ -138,6 +138,41 @@ def test_blocks_equal_flying_edges_of_the_whole_lattice() -> None:
     assert np.count_nonzero(np.abs(stored.vertices - blocks.vertices) > 1e-12, axis=1).max() == 1
 
 
+@pytest.mark.parametrize("capped", [False, True])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_surface_that_is_followed_is_the_whole_vertex_for_vertex_and_costs_less(seed: int, capped: bool) -> None:
+    noise = gaussian_filter(np.random.default_rng(seed).normal(size=(40, 44, 48)), 5.0).astype(np.float32)
+    smooth = implicit.spline_grid(noise - 1.5 * noise.std(), implicit.Lattice([0, 0, 0], 1.0, noise.shape))
+    asked: list[int] = []
+
+    def value(xyz: np.ndarray) -> np.ndarray:
+        asked.append(len(xyz))
+        return -smooth.value(xyz)
+
+    field = implicit.FunctionField(value, lambda xyz: -smooth.gradient(xyz), EVERYTHING, np.inf)
+    coarse = isosurface(field, implicit.Lattice([0, 0, 0], 1.0, noise.shape), capped=capped)
+    lattice = implicit.Lattice([0.2, 0.2, 0.2], 0.21, (188, 207, 225))
+    asked.clear()
+    everything = isosurface(field, lattice, capped=capped)
+    whole_cost = sum(asked)
+    asked.clear()
+    followed = isosurface(field, lattice, capped=capped, near=coarse.vertices)
+    assert sum(asked) < 0.6 * whole_cost
+    assert followed.vertices.tobytes() == everything.vertices.tobytes()
+    assert followed.triangles.tobytes() == everything.triangles.tobytes()
+
+
+def test_a_surface_is_looked_for_only_where_known_places_lead() -> None:
+    balls = implicit.union(implicit.Sphere([-0.5, 0, 0], 0.2), implicit.Sphere([0.5, 0, 0], 0.2))
+    lattice = implicit.Lattice.around(*BOX, cells=64)
+    one = isosurface(whole(balls), lattice, near=np.array([[-0.5, 0.2, 0.0]]))
+    check(one, lattice.spacing)
+    assert one.components == 1
+    assert one.volume == pytest.approx(isosurface(balls, lattice).volume / 2, rel=1e-9)
+    assert not len(isosurface(whole(balls), lattice, near=np.array([[0.0, 0.9, 0.9]])).triangles)
+    assert not len(isosurface(whole(balls), lattice, near=np.zeros((0, 3))).triangles)
+
+
 @pytest.mark.parametrize(("sigma", "n"), [(1.2, 64), (0.7, 40), (2.5, 64)])
 def test_noise_is_closed_and_manifold(sigma: float, n: int) -> None:
     noise = gaussian_filter(np.random.default_rng(5).normal(size=(n, n, n)), sigma).astype(np.float32)
