@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.bodies.between import between_samples
 from geofit.data.accuracy import Accuracy, Check, Conflict, Exceedance, Group
 from geofit.data.messages import Message, message
 
@@ -72,10 +73,11 @@ def examine_body(body: BodyFit) -> BodyAccuracy:
     n = len(residuals)
     sigma = float(np.sqrt((residuals**2).sum() / max(n - 1, 1)))
     wrong_in, wrong_out = body.value(data.inside) >= 0, body.value(data.outside) <= 0
-    extra_in, missed = _between(body, data.inside, data.inside_hole, data.inside_length, inside=True)
-    extra_out, excess = _between(body, data.outside, data.outside_hole, data.outside_length, inside=False)
-    missed += float(np.nansum(data.inside_length[wrong_in]))
-    excess += float(np.nansum(data.outside_length[wrong_out]))
+    missed_between, excess_between = (crossed_pairs(body, inside=inside)[1] for inside in (True, False))
+    missed = float(missed_between.sum() + np.nansum(data.inside_length[wrong_in]))
+    excess = float(excess_between.sum() + np.nansum(data.outside_length[wrong_out]))
+    # Into the other side and back.
+    crossings = 2 * (len(missed_between) + len(excess_between))
     buried = body.fitted.buried
     logged = float(np.nansum(data.inside_length) + np.nansum(data.outside_length))
     wrong = int(wrong_in.sum() + wrong_out.sum())
@@ -115,14 +117,14 @@ def examine_body(body: BodyFit) -> BodyAccuracy:
         ),
         Check(
             "crossings",
-            extra_in + extra_out == 0,
-            float(extra_in + extra_out),
+            crossings == 0,
+            float(crossings),
             0.0,
             "1",
             message(
                 "bodies.crossings-between-samples",
                 "{count} places where a hole crosses the surface between two samples of one side",
-                count=extra_in + extra_out,
+                count=crossings,
             ),
         ),
         Check(
@@ -192,7 +194,7 @@ def examine_body(body: BodyFit) -> BodyAccuracy:
         missed_length=missed,
         excess_length=excess,
         logged_length=logged,
-        extra_crossings=extra_in + extra_out,
+        extra_crossings=crossings,
         unsupported=unsupported,
         far_share=far_share,
         far_distance=far,
@@ -200,34 +202,22 @@ def examine_body(body: BodyFit) -> BodyAccuracy:
     )
 
 
-def crossed_pairs(
-    body: BodyFit, xyz: Floats, hole: NDArray[np.str_], length: Floats, *, inside: bool
-) -> tuple[Floats, Floats, NDArray[np.intp]]:
+def crossed_pairs(body: BodyFit, *, inside: bool) -> tuple[Floats, Floats, NDArray[np.intp]]:
     """Return where the surface crosses between neighbouring samples of one hole and side.
 
     Returns
     -------
     tuple
-        The middles (k, 3) of such pairs, map coordinates, their distances (k,), metres, and the first of each pair.
+        A place (k, 3) on the wrong side between the samples of each such pair, map coordinates, the length (k,) of the
+        hole on that side there, metres, and the first sample (k,) of each pair.
     """
-    if len(xyz) < 2:
-        return np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.intp)
-    gap = np.linalg.norm(np.diff(xyz, axis=0), axis=1)
-    # Samples of one stretch lie one sample's length apart; a longer way leads to the next stretch.
-    pair = np.flatnonzero(
-        (hole[1:] == hole[:-1]) & (hole[1:] != "") & (gap < 1.01 * np.maximum(length[1:], length[:-1]))
-    )
-    middle = (xyz[1:] + xyz[:-1])[pair] / 2
-    value = body.value(middle)
-    crossed = value >= 0 if inside else value <= 0
-    return middle[crossed], gap[pair][crossed], pair[crossed]
-
-
-def _between(body: BodyFit, xyz: Floats, hole: NDArray[np.str_], length: Floats, *, inside: bool) -> tuple[int, float]:
-    """Return crossings between neighbouring samples of one hole and side, and the length they take (metres)."""
-    gap = crossed_pairs(body, xyz, hole, length, inside=inside)[1]
-    # Half the way between the two samples is off, by linear interpolation with both of them on their side.
-    return 2 * len(gap), float(gap.sum() / 2)
+    places, share, first = between_samples(body.data, inside=inside)
+    value = body.value(places)
+    wrong = np.flatnonzero(value >= 0 if inside else value <= 0)
+    pairs, at, of = np.unique(first[wrong], return_index=True, return_inverse=True)
+    length = np.zeros(len(pairs))
+    np.add.at(length, of, share[wrong])
+    return places[wrong[at]], length, pairs
 
 
 def _far_share(body: BodyFit, distance: float) -> float:

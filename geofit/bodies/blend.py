@@ -9,18 +9,18 @@ is their convex combination, so it satisfies them too: equalities and inequaliti
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.bodies.active import SidedSamples, farthest_apart, fit_active
+from geofit.bodies.active import ActiveFit, SidedSamples, farthest_apart, fit_active
 from geofit.bodies.kernels import CUBIC, blend
 from geofit.bodies.rbf import Rbf
 
-__all__ = ["Blend", "BlendFit", "BlendPart", "fit_blend"]
+__all__ = ["Blend", "BlendFit", "BlendPart", "fit_blend", "refit_blend"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -39,11 +39,13 @@ OVERLAP = 0.12
 
 @dataclass(frozen=True, eq=False)
 class BlendPart:
-    """A box with its correction: ``centre`` and ``half`` (3,) of the grown box."""
+    """A box with its correction: ``centre`` and ``half`` (3,) of the grown box; active samples and rounds it took."""
 
     centre: Floats
     half: Floats
-    correction: Rbf | None
+    correction: Rbf | None = None
+    active: int = 0
+    rounds: int = 0
 
     def holds(self, x: Floats) -> NDArray[np.bool_]:
         """Return whether each of (n, 3) places lies in the grown box."""
@@ -91,12 +93,21 @@ class Blend:
 
 @dataclass(frozen=True, eq=False)
 class BlendFit:
-    """The field, the number of samples active in the coarse field and the parts, all conditions, and the rounds."""
+    """The field, and the number of active samples and the rounds of its coarse field."""
 
     field: Blend
-    active: int
-    conditions: int
-    rounds: int
+    coarse_active: int
+    coarse_rounds: int
+
+    @property
+    def active(self) -> int:
+        """Samples active in the coarse field and in the parts."""
+        return self.coarse_active + sum(part.active for part in self.field.parts)
+
+    @property
+    def rounds(self) -> int:
+        """Rounds of the coarse field or of the part that took most."""
+        return max([self.coarse_rounds, *(part.rounds for part in self.field.parts)])
 
 
 def fit_blend(
@@ -124,47 +135,84 @@ def fit_blend(
     kernel : float
         Of the coarse field, see :mod:`geofit.bodies.kernels`.
     """
+    first = _coarse(points, oriented, normals, samples, kernel)
+    left = _Left.by(first.rbf, points, oriented, normals, samples)
+    lower = np.minimum(corners.min(axis=0), points.min(axis=0)) - 1e-9
+    upper = np.maximum(corners.max(axis=0), points.max(axis=0)) + 1e-9
+    lacking = left.samples.xyz[left.samples.bound > left.samples.slack]
+    load = np.concatenate([np.where(oriented, 4, 1), np.full(len(lacking), LACKING)])
+    boxes = _boxes(np.concatenate([points, lacking]), load, lower, upper)
+    parts = tuple(left.fitted(BlendPart((low + high) / 2, (high - low) * (0.5 + OVERLAP))) for low, high in boxes)
+    return BlendFit(Blend(first.rbf, parts), len(first.active), first.rounds)
+
+
+def refit_blend(
+    former: BlendFit,
+    points: Floats,
+    oriented: NDArray[np.bool_],
+    normals: Floats,
+    samples: SidedSamples,
+    fresh: int,
+) -> BlendFit:
+    """Fit a field again with more samples, the last ``fresh`` of all: only parts that hold one of those change.
+
+    The other parameters are those of :func:`fit_blend`.
+    """
+    left = _Left.by(former.field.coarse, points, oriented, normals, samples)
+    new = samples.xyz[len(samples) - fresh :]
+    parts = tuple(left.fitted(part) if part.holds(new).any() else part for part in former.field.parts)
+    return replace(former, field=Blend(former.field.coarse, parts))
+
+
+@dataclass(frozen=True, eq=False)
+class _Left:
+    """What a coarse field leaves to the parts: values at the contacts, gradients (NaN where none is given), bounds."""
+
+    points: Floats
+    values: Floats
+    gradients: Floats
+    samples: SidedSamples
+
+    @classmethod
+    def by(
+        cls, coarse: Rbf, points: Floats, oriented: NDArray[np.bool_], normals: Floats, samples: SidedSamples
+    ) -> _Left:
+        gradients = np.full_like(points, np.nan)
+        gradients[oriented] = normals - coarse.gradient(points[oriented])
+        bound = samples.bound - samples.side * coarse.value(samples.xyz)
+        return cls(points, -coarse.value(points), gradients, replace(samples, bound=bound))
+
+    def fitted(self, part: BlendPart) -> BlendPart:
+        """Return a part with its correction; without one where it has nothing to correct."""
+        at, near = np.flatnonzero(part.holds(self.points)), self.samples[part.holds(self.samples.xyz)]
+        if not len(at) and not (near.bound > near.slack).any():
+            return part
+        turned = at[np.isfinite(self.gradients[at]).all(axis=1)]
+        reach = 2.0 * float(np.linalg.norm(part.half))
+        fit = fit_active(self.points[at], self.values[at], self.points[turned], self.gradients[turned], near, reach)
+        return replace(part, correction=fit.rbf, active=len(fit.active), rounds=fit.rounds)
+
+
+def _coarse(
+    points: Floats, oriented: NDArray[np.bool_], normals: Floats, samples: SidedSamples, kernel: float
+) -> ActiveFit:
+    """Fit the coarse field through some contacts far from each other; what it leaves violated, the parts correct."""
     rows = np.where(oriented, 4, 1)
     chosen = np.sort(farthest_apart(points, max(50, int(COARSE / rows.mean()))))
-    gradient = np.full_like(points, np.nan)
-    gradient[oriented] = normals
-    some = np.arange(0, len(samples), -(-len(samples) // COARSE_SAMPLES)) if len(samples) else np.zeros(0, np.int64)
+    gradients = np.full_like(points, np.nan)
+    gradients[oriented] = normals
     own = chosen[oriented[chosen]]
-    first = fit_active(
+    some = np.arange(0, len(samples), -(-len(samples) // COARSE_SAMPLES)) if len(samples) else np.zeros(0, np.int64)
+    return fit_active(
         points[chosen],
         np.zeros(len(chosen)),
         points[own],
-        gradient[own],
+        gradients[own],
         samples[some],
         kernel,
         most=COARSE_ROUNDS,
         partial=True,
     )
-    coarse = first.rbf
-    rest = -coarse.value(points)
-    bend = gradient[oriented] - coarse.gradient(points[oriented])
-    gradient[oriented] = bend
-    lower = np.minimum(corners.min(axis=0), points.min(axis=0)) - 1e-9
-    upper = np.maximum(corners.max(axis=0), points.max(axis=0)) + 1e-9
-    left = SidedSamples(
-        samples.xyz, samples.side, samples.bound - samples.side * coarse.value(samples.xyz), samples.slack
-    )
-    parts, active, rounds = [], len(first.active), first.rounds
-    lacking = left.xyz[left.bound > left.slack]
-    load = np.concatenate([rows, np.full(len(lacking), LACKING)])
-    for low, high in _boxes(np.concatenate([points, lacking]), load, lower, upper):
-        centre, half = (low + high) / 2, (high - low) * (0.5 + OVERLAP)
-        part = BlendPart(centre, half, None)
-        at = np.flatnonzero(part.holds(points))
-        near = left[part.holds(samples.xyz)]
-        if len(at) or (near.bound > near.slack).any():
-            turned = at[oriented[at]]
-            reach = 2.0 * float(np.linalg.norm(half))
-            fit = fit_active(points[at], rest[at], points[turned], gradient[turned], near, reach)
-            part = BlendPart(centre, half, fit.rbf)
-            active, rounds = active + len(fit.active), max(rounds, fit.rounds)
-        parts.append(part)
-    return BlendFit(Blend(coarse, tuple(parts)), active, int(rows.sum()) + active, rounds)
 
 
 def _boxes(points: Floats, load: Floats, lower: Floats, upper: Floats) -> Iterator[tuple[Floats, Floats]]:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.bodies.active import farthest_apart
 from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_field
 from geofit.bodies.posterior import BodyPosterior
@@ -46,7 +45,8 @@ class HoleScore:
     ``contact_errors`` are distances along the hole from each logged contact to the nearest one predicted, metres (on a
     section: at right angles to the surface); ``missed`` counts the contacts of a hole on which none is predicted.
     ``contacts`` counts those at which the chance of lying inside was evaluated, ``covered`` those of them at which it
-    is from 5 to 95 %.
+    is from 5 to 95 %. ``beyond`` counts those beyond the reach of all other data, where the body is closed whatever is
+    there: no chance says how sure that is.
     """
 
     hole: str
@@ -56,6 +56,7 @@ class HoleScore:
     missed: int
     contacts: int = 0
     covered: int = 0
+    beyond: int = 0
 
 
 @dataclass(frozen=True)
@@ -93,6 +94,11 @@ class MethodScore:
         return sum(hole.covered for hole in self.holes) / contacts if contacts else float("nan")
 
     @property
+    def beyond(self) -> int:
+        """Contacts beyond the reach of all other data."""
+        return sum(hole.beyond for hole in self.holes)
+
+    @property
     def missed(self) -> int:
         """Contacts of holes on which none is predicted."""
         return sum(hole.missed for hole in self.holes)
@@ -112,7 +118,7 @@ class CrossValidation:
         score = self.methods["body"]
         return LeftOutBody(
             self.scheme, len(score.holes), score.contact_rms, score.missed, score.misclassified, score.logged,
-            score.inside,
+            score.inside, score.beyond,
         )  # fmt: skip
 
 
@@ -136,8 +142,9 @@ def leave_one_hole_out(
     body : BodyFit
         A body whose data name their holes.
     holes : int
-        Holes left out at most: of those that meet the body or come within reach of it, some spread over it; by default
-        30, and 8 of a body with more than 1500 conditions. Sections take the place of holes where outlines are given.
+        Holes left out at most: of those that meet the body or come within reach of it, every so many along its longest
+        direction, so that they lie apart as all do; by default 30, and 8 of a body with more than 1500 conditions.
+        Sections take the place of holes where outlines are given.
     compared : bool
         Whether the two usual methods are scored, too.
     scheduler, workers : str, int
@@ -187,9 +194,11 @@ def _with_band(line: _Line, body: BodyFit) -> HoleScore:
         return score
     if line.flat:
         score = replace(score, contact_errors=tuple(np.abs(body.distance(line.places)).tolist()), missed=0)
-    chance = BodyPosterior(body).probability(line.places)
+    posterior = BodyPosterior(body)
+    known = line.places[posterior.open_ground(line.places)]
+    chance = posterior.probability(known)
     covered = int(((chance >= BAND) & (chance <= 1 - BAND)).sum())
-    return replace(score, contacts=len(line.places), covered=covered)
+    return replace(score, contacts=len(known), covered=covered, beyond=len(line.places) - len(known))
 
 
 def _without_hole(task: tuple[BodyFit, str, bool]) -> tuple[HoleScore, ...] | str:
@@ -205,7 +214,10 @@ def _without_hole(task: tuple[BodyFit, str, bool]) -> tuple[HoleScore, ...] | st
 
 
 def _chosen(body: BodyFit, most: int) -> tuple[str, ...]:
-    """Return holes that meet the body or come within its reach, at most so many, spread over it."""
+    """Return holes that meet the body or come within its reach: all, or every so many along their longest direction.
+
+    Those that lie farthest apart would be the loneliest ones, which the others say least of.
+    """
     from scipy.spatial import cKDTree
 
     data = body.data
@@ -223,7 +235,10 @@ def _chosen(body: BodyFit, most: int) -> tuple[str, ...]:
     near = cKDTree(own).query(xyz - body.origin)[0] <= body.region.reach
     found = sorted(set(names[near].tolist()) - {""})
     middles = np.array([xyz[(names == name) & near].mean(axis=0) for name in found])
-    return tuple(found[k] for k in np.sort(farthest_apart(middles - body.origin, min(most, len(found)))).tolist())
+    order = np.argsort((middles - middles.mean(axis=0)) @ _directions(middles)[0][0], kind="stable")
+    count = min(most, len(found))
+    some = order[((np.arange(count) + 0.5) * len(found) / count).astype(int)]
+    return tuple(found[k] for k in np.sort(some).tolist())
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.bodies.active import SidedSamples, fit_active
+from geofit.bodies.active import ActiveFit, SidedSamples, fit_active
+from geofit.bodies.between import between_samples
 from geofit.bodies.data import BodyData, Prepared, prepare
 from geofit.bodies.field import SIDES, BodyField
 from geofit.bodies.fitted import BodyRaster, Fitted
 from geofit.bodies.frame import BodyFrame
 from geofit.bodies.kernels import KERNELS, LINEAR
-from geofit.bodies.rbf import Saddle
 from geofit.bodies.region import Region, hole_spacing, region_of
 from geofit.bodies.settings import BodySettings
 from geofit.data.errors import FitError
@@ -25,14 +25,18 @@ from geofit.data.messages import message
 from geofit.implicit.lattice import Lattice, sample
 
 if TYPE_CHECKING:
+    from geofit.bodies.blend import BlendFit
     from geofit.bodies.body import BodyFit
 
 __all__ = ["Fitted", "fit_body", "fit_field"]
 
 Floats = NDArray[np.float64]
 
-#: Parts of the body that no data support are closed and the field is fitted again, this often at most.
+#: Parts of the body that no data support are closed, places between samples on which the field has the other side are
+#: made samples, and the field is fitted again, this often at most.
 ROUNDS = 5
+#: Places between samples are no nearer to other data than this share of the distance between them.
+APART = 0.1
 #: Nodes of the raster on which such parts are looked for, along the longest side of the box, and those that the extent
 #: of the body is larger than it.
 NODES = 48
@@ -118,19 +122,33 @@ def fit_field(data: BodyData, settings: BodySettings) -> Fitted:
                 )
             )
     frame = BodyFrame.around(region.lower, region.upper, settings)
-    outside = np.concatenate([prepared.outside, region.closing])
+    samples = [(prepared.inside, -1.0), (prepared.outside, 1.0), (region.closing, 1.0)]
     lower, upper = region.lower - frame.origin, region.upper - frame.origin
-    unsupported = 0
+    between = {side: _between_used(data, prepared, inside=side < 0) for side in (-1.0, 1.0)}
+    fit: ActiveFit | BlendFit | None = None
+    fresh = unsupported = 0
     for attempt in range(ROUNDS + 1):
-        fit = _solve(prepared, outside, region, frame, settings)
-        field = BodyField(fit[0], frame, lower, upper)
+        try:
+            fit = _solve(prepared, samples, region, frame, settings, fit, fresh)
+        except FitError:
+            # A field that leaves some places to the other side is better than none: the checks count them.
+            if fit is None:
+                raise
+            break
+        field = BodyField(fit.rbf if isinstance(fit, ActiveFit) else fit.field, frame, lower, upper)
         survey, strays, buried = _survey(field, prepared, frame.origin)
         unsupported = len(strays)
-        if not settings.closed or not unsupported or attempt == ROUNDS:
+        lacking = [(places[side * field.value(places - frame.origin) <= 0], side) for side, places in between.items()]
+        if settings.closed:
+            lacking.append((strays, 1.0))
+        fresh = sum(len(places) for places, _ in lacking)
+        if attempt == ROUNDS or not fresh:
             break
-        outside = np.concatenate([outside, strays])
-    interpolant, system, active, conditions, rounds = fit
-    field = BodyField(interpolant, frame, lower, upper, field.reaches())
+        samples += lacking
+    assert fit is not None
+    system, active = (fit.system, len(fit.active)) if isinstance(fit, ActiveFit) else (None, fit.active)
+    given = len(prepared.contacts) + 3 * int(np.isfinite(prepared.normals).all(axis=1).sum())
+    field = replace(field, cut=field.reaches())
     return Fitted(
         field,
         region,
@@ -138,18 +156,42 @@ def fit_field(data: BodyData, settings: BodySettings) -> Fitted:
         survey,
         system,
         active,
-        conditions,
-        rounds,
+        given + active,
+        fit.rounds,
         time.perf_counter() - start,
         unsupported,
         buried,
     )
 
 
+def _between_used(data: BodyData, prepared: Prepared, *, inside: bool) -> Floats:
+    """Return the places between two samples of one stretch that are both used; none at other data, none twice."""
+    from scipy.spatial import cKDTree
+
+    places, share, first = between_samples(data, inside=inside)
+    used = prepared.inside_used if inside else prepared.outside_used
+    known = np.concatenate([prepared.contacts, prepared.inside, prepared.outside])
+    if not len(places):
+        return places
+    origin = known[0]
+    apart = cKDTree(known - origin).query(places - origin)[0] > APART * share
+    places, share = (each[used[first] & used[first + 1] & apart] for each in (places, share))
+    if not len(places):
+        return places
+    twins = cKDTree(places - origin).query_pairs(APART * float(share.min()), output_type="ndarray")
+    return np.delete(places, twins.max(axis=1), axis=0) if len(twins) else places
+
+
 def _solve(
-    prepared: Prepared, outside: Floats, region: Region, frame: BodyFrame, settings: BodySettings
-) -> tuple[Any, Saddle | None, int, int, int]:
-    """Return the interpolant, its system, the number of active samples and of conditions, and the rounds."""
+    prepared: Prepared,
+    sides: Sequence[tuple[Floats, float]],
+    region: Region,
+    frame: BodyFrame,
+    settings: BodySettings,
+    former: ActiveFit | BlendFit | None,
+    fresh: int,
+) -> ActiveFit | BlendFit:
+    """Fit a field, in parts where there are many contacts; ``former`` is the fit without the last ``fresh`` places."""
     from scipy.spatial import cKDTree
 
     contacts = frame.to_fit(prepared.contacts)
@@ -165,20 +207,19 @@ def _solve(
                 count=len(slopes),
             )
         )
-    xyz = frame.to_fit(np.concatenate([prepared.inside, outside]))
-    side = np.concatenate([-np.ones(len(prepared.inside)), np.ones(len(outside))])
+    xyz = frame.to_fit(np.concatenate([places for places, _ in sides]))
+    side = np.concatenate([np.full(len(places), side) for places, side in sides])
     near = cKDTree(contacts).query(xyz)[0] * frame.size if len(xyz) else np.zeros(0)
     # Quadratic near a contact: thin intervals would otherwise make a field of tents, with every sample active.
     samples = SidedSamples.of(xyz, side, np.minimum(near, region.bound) ** 2 / region.bound)
     if len(contacts) + 3 * int(oriented.sum()) > settings.dense:
-        from geofit.bodies.blend import fit_blend
+        from geofit.bodies.blend import BlendFit, fit_blend, refit_blend
 
+        if isinstance(former, BlendFit):
+            return refit_blend(former, contacts, oriented, slopes, samples, fresh)
         corners = np.array(np.meshgrid(*zip(region.lower, region.upper, strict=True))).reshape(3, -1).T
-        blend = fit_blend(contacts, oriented, slopes, samples, frame.to_fit(corners), kernel)
-        return blend.field, None, blend.active, blend.conditions, blend.rounds
-    fit = fit_active(contacts, np.zeros(len(contacts)), contacts[oriented], slopes, samples, kernel)
-    conditions = len(contacts) + 3 * int(oriented.sum()) + len(fit.active)
-    return fit.rbf, fit.system, len(fit.active), conditions, fit.rounds
+        return fit_blend(contacts, oriented, slopes, samples, frame.to_fit(corners), kernel)
+    return fit_active(contacts, np.zeros(len(contacts)), contacts[oriented], slopes, samples, kernel)
 
 
 def _survey(field: BodyField, prepared: Prepared, origin: Floats) -> tuple[BodyRaster, Floats, float]:

@@ -66,10 +66,9 @@ def violations(body: BodyFit) -> tuple[Violation, ...]:
         )
         for i, distance in zip(wrong.tolist(), distances.tolist(), strict=True):
             found.append(Violation("sample", str(hole[i]), _place(xyz[i]), distance, float(length[i]), text))
-        middle, gap, first = crossed_pairs(body, xyz, hole, length, inside=inside)
-        for place, metres, i in zip(middle, (gap / 2).tolist(), first.tolist(), strict=True):
+        for place, metres, i in zip(*crossed_pairs(body, inside=inside), strict=True):
             away = float(body.distance(place[None])[0])
-            found.append(Violation("length", str(hole[i]), _place(place), away, metres, text))
+            found.append(Violation("length", str(hole[i]), _place(place), away, float(metres), text))
     found += [
         Violation("data", "", issue.place, np.nan, np.nan, issue.text)
         for issue in body.issues

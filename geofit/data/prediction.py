@@ -24,7 +24,8 @@ class LeftOutBody:
     ``error`` is the root mean square distance from a contact to the predicted surface, metres: along a hole, at right
     angles to the surface on a section; nan if there is none. ``missed`` counts contacts of holes on which no contact is
     predicted. ``misclassified`` of the ``logged`` metres lie on the wrong side. ``inside`` is the share of contacts
-    that the 90 % band contains: those at which the chance of lying inside is from 5 to 95 %.
+    that the 90 % band contains: those at which the chance of lying inside is from 5 to 95 %; nan if there is none.
+    ``beyond`` counts contacts beyond the reach of all other data, where no chance is known.
     """
 
     scheme: Scheme
@@ -34,6 +35,7 @@ class LeftOutBody:
     misclassified: float
     logged: float
     inside: float
+    beyond: int = 0
 
 
 @dataclass(frozen=True, eq=False)

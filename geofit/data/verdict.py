@@ -243,8 +243,13 @@ def _away_of_body(found: LeftOutBody, epsilon: float) -> Lamp:
                 logged=found.logged,
             )
         )
-    parts.append(message("data.band-contains", "the 90 % band contains {share:.0f} %", share=100 * found.inside))
-    if level == "pass" and (found.missed or round(found.inside, 2) < LEAST_INSIDE):
+    if np.isfinite(found.inside):
+        parts.append(message("data.band-contains", "the 90 % band contains {share:.0f} %", share=100 * found.inside))
+    if found.beyond:
+        parts.append(
+            message("data.contacts-beyond", "contacts beyond the reach of other data: {count}", count=found.beyond)
+        )
+    if level == "pass" and (found.missed or found.beyond or round(found.inside, 2) < LEAST_INSIDE):
         level = "warning"
     return Lamp(title, level, message("data.left-out-body", "{parts}", parts=tuple(parts)))
 

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from geofit.bodies.between import between_samples
 from geofit.bodies.data import BodyData, prepare
 from geofit.bodies.fit import fit_body
 from geofit.bodies.intervals import from_intervals
@@ -116,3 +117,44 @@ def test_a_site_file_keeps_its_logs(tmp_path: Path) -> None:
     assert body.triangulate().volume == pytest.approx(4 / 3 * np.pi * 32 * 32 * 15, rel=0.05)
     with pytest.raises(SettingsError, match="no logged intervals"):
         fit_body(Site("empty", {}), codes="ORE")
+
+
+@pytest.mark.parametrize("thin", [0.1, 0.3, 1.0])
+def test_a_thin_interval_between_two_stretches_is_not_taken_for_a_crossing(thin: float) -> None:
+    """Samples of two stretches were taken for neighbours, and the rock between them for one that they miss."""
+    rows = [("A", 0, 20, "X"), ("A", 20, 28, "ORE"), ("A", 28, 28 + thin, "X"), ("A", 28 + thin, 36, "ORE"),
+            ("A", 36, 60, "X"), ("B", 0, 60, "X")]  # fmt: skip
+    data = from_intervals(holes(*rows), "ORE", step=2.2)
+    for inside in (True, False):
+        places, share, _ = between_samples(data, inside=inside)
+        depth = -places[:, 2]
+        assert len(depth)
+        assert share.sum() < (data.inside_length if inside else data.outside_length).sum()
+        rock = (depth > 20) & (depth < 36) & ~((depth > 28) & (depth < 28 + thin)) & (places[:, 0] == 0)
+        assert (rock == inside).all()
+    accuracy = fit_body(data).accuracy
+    assert accuracy is not None
+    assert (accuracy.extra_crossings, accuracy.missed_length, accuracy.excess_length) == (0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("dense", [600, 60])
+def test_a_hole_between_whose_samples_the_body_bulged_is_honoured_there(dense: int) -> None:
+    """In parts or not: the sides between two samples are asked for where the field has the other one."""
+    rng = np.random.default_rng(4)
+    unit = rng.normal(size=(120, 3))
+    unit /= np.linalg.norm(unit, axis=1)[:, None]
+    bump = np.array([[36.0, y, z] for y in (-3.0, 3.0) for z in (-2.0, 2.0)])
+    contacts = np.concatenate([30 * unit[np.abs(unit[:, 1:]).max(axis=1) > 0.25], bump])
+    outside = np.column_stack([np.full(4, 33.0), np.zeros(4), 30.0 - 15.0 * np.arange(4) - 7.5])
+    data = BodyData(contacts, np.zeros((1, 3)), outside, outside_hole=["H"] * 4, outside_length=np.full(4, 15.0))
+    places, share, _ = between_samples(data, inside=False)
+    body = fit_body(data, BodySettings(dense=dense))
+    assert (body.fitted.system is None) == (dense == 60)
+    assert (body.value(places) > 0).all()
+    accuracy = body.accuracy
+    assert accuracy is not None
+    assert (accuracy.extra_crossings, accuracy.excess_length) == (0, 0.0)
+    assert np.abs(accuracy.residuals).max() < 1e-6
+    alone = fit_body(BodyData(contacts, np.zeros((1, 3)), outside), BodySettings(dense=dense))
+    wrong = alone.value(places) <= 0
+    assert 0 < share[wrong].sum() < 15.0

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geofit.bodies.active import complementarity
+from geofit.bodies.active import SidedSamples, complementarity
+from geofit.bodies.blend import fit_blend, refit_blend
 from geofit.bodies.body import BodyFit
 from geofit.bodies.kernels import CUBIC, LINEAR, gradients, gram, values
 from geofit.bodies.rbf import Rbf, Saddle
@@ -103,3 +104,25 @@ def test_drift_and_its_gradient_are_those_of_its_ten_terms() -> None:
         by = step * np.eye(3)[axis]
         slope = (drift.value(x + by) - drift.value(x - by)) / (2 * step)
         assert drift.gradient(x)[:, axis] == pytest.approx(slope, rel=1e-6, abs=1e-6)
+
+
+def test_only_parts_with_new_samples_are_fitted_again() -> None:
+    rng = np.random.default_rng(7)
+    unit = rng.normal(size=(900, 3))
+    unit /= np.linalg.norm(unit, axis=1)[:, None]
+    contacts = unit * (1 + 0.1 * np.sin(5 * unit[:, :1]))
+    oriented, none = np.zeros(len(contacts), bool), np.zeros((0, 3))
+    corners = 1.5 * np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T.astype(float)
+    first = SidedSamples.of(np.zeros((1, 3)), -np.ones(1), np.full(1, 0.1))
+    former = fit_blend(contacts, oriented, none, first, corners)
+    place = 0.9 * contacts[:1]
+    assert former.field.value(place)[0] < 0
+    more = SidedSamples.of(np.vstack([first.xyz, place]), np.array([-1.0, 1.0]), np.array([0.1, 0.01]))
+    again = refit_blend(former, contacts, oriented, none, more, 1)
+    holding = [part.holds(place)[0] for part in former.field.parts]
+    assert 0 < sum(holding) < len(holding) / 2
+    for held, one, other in zip(holding, former.field.parts, again.field.parts, strict=True):
+        assert (one is other) == (not held)
+    assert again.field.value(place)[0] > 0.0099
+    assert np.abs(again.field.value(contacts)).max() < 1e-8
+    assert again.active > former.active

@@ -125,6 +125,8 @@ def body_left_out(**changed):
         ({"error": 5.0}, "fail", "10 ε"),
         ({"inside": 0.8}, "warning", "the 90 % band contains 80 %"),
         ({"missed": 2}, "warning", "contacts not predicted: 2"),
+        ({"beyond": 3}, "warning", "the 90 % band contains 90 %, contacts beyond the reach of other data: 3"),
+        ({"beyond": 3, "inside": np.nan}, "warning", "on the wrong side, contacts beyond the reach of other data: 3"),
         ({"error": np.nan, "missed": 4}, "fail", "none of 4 left-out contacts"),
         ({"error": np.nan}, "none", "cannot be estimated"),
         ({"scheme": "section", "logged": 0.0}, "pass", "sections left out"),
