@@ -200,8 +200,12 @@ def read_step(path: str | PathLike[str]) -> dict[str, PatchSurface]:
 
 
 def step_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
-    """Read a STEP file in this process, which a damaged file may end; see :func:`read_step`."""
-    return {shape.name: surface_of(shape) for shape in read_shapes(path)}
+    """Read a STEP file in this process, which a damaged file may end; see :func:`read_step`.
+
+    Loops in geofit's own files are the outline of a fit, whose patches go on beneath it: points outside are measured
+    to them, as in the fit. What lies beneath the loops of a foreign face is not known.
+    """
+    return {shape.name: surface_of(shape, whole="geofit_version" in shape.attributes) for shape in read_shapes(path)}
 
 
 def read_shapes(path: str | PathLike[str]) -> list[FileShape]:

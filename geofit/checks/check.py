@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from geofit.checks.lattice import lattices
 from geofit.checks.oscillation import oscillation
+from geofit.checks.outside import BEYOND, beyond_by, beyond_check, continued
 from geofit.checks.residual_tests import by_label, residual_checks
 from geofit.checks.selfcross import self_crossing
 from geofit.checks.shape import shape_checks
@@ -74,7 +75,8 @@ def check(
         The fit; its ``core`` marks the points that it must meet exactly. Without patches (triangles of a file) the
         surface itself is not looked at.
     conflicts : sequence of Conflict
-        Points that were dropped before the fit. Their residuals count in sigma like all others.
+        Points that were dropped before the fit. Their residuals count in sigma like all others, and so do those of
+        points outside the outline, which are measured to the surface as it continues there.
     notes : sequence of str
         What the fit has to say.
     projection : Projection, optional
@@ -98,8 +100,9 @@ def check(
             )
         )
         between = of_surface()
-    checks, missing = [*at_points[0], *between[0]], [*at_points[1], *between[1]]
     value = sigma(d)
+    beyond = _beyond_surface(surface, d, value, projection)
+    checks, missing = [*at_points[0], *beyond, *between[0]], [*at_points[1], *between[1]]
     over = {
         name: Exceedance(limit, _beyond(d, limit))
         for name, limit in (("interior_tolerance", settings.interior_tolerance), ("epsilon", settings.epsilon))
@@ -138,13 +141,20 @@ def judged_by(surface: FittedSurface, accuracy: Accuracy, epsilon: float) -> Acc
     epsilon : float
         The control error, metres.
     """
-    checks = tuple(_trend_by(surface, accuracy, one) if one.name == TREND else one for one in accuracy.checks)
+    checks = tuple(_judged_by(surface, accuracy, one) for one in accuracy.checks)
     passed = accuracy.sigma < epsilon and not _runs_away(surface, checks)
     beyond = Exceedance(epsilon, _beyond(accuracy.residuals, epsilon))
     notes = tuple(note for note in accuracy.notes if not (passed and note.code == "fitting.sigma-above-epsilon"))
     return replace(
         accuracy, epsilon=epsilon, passed=passed, over={**accuracy.over, "epsilon": beyond}, checks=checks, notes=notes
     )
+
+
+def _judged_by(surface: FittedSurface, accuracy: Accuracy, former: Check) -> Check:
+    """Return a check as another control error has it."""
+    if former.name == BEYOND:
+        return beyond_by(former, accuracy.sigma, surface.settings.epsilon)
+    return _trend_by(surface, accuracy, former) if former.name == TREND else former
 
 
 def _trend_by(surface: FittedSurface, accuracy: Accuracy, former: Check) -> Check:
@@ -234,6 +244,18 @@ def _worst(d: Floats) -> tuple[int, ...]:
         rows = np.concatenate([rows, start + some[np.argsort(-magnitude[some], kind="stable")[:WORST]]])
         start += len(part)
     return tuple(rows[np.argsort(-np.abs(d[rows]), kind="stable")[:WORST]].tolist())
+
+
+def _beyond_surface(surface: FittedSurface, d: Floats, value: float, projection: Projection | None) -> list[Check]:
+    """Count the points that the surface does not reach; the edge is looked at where the projection marks it."""
+    edge = None if projection is None else projection.beyond
+    out = continued(surface)
+    beyond = out if edge is None else out | edge
+    if edge is None and not out.any():
+        return []
+    at_edge = 0 if edge is None else int(edge.sum())
+    within = sigma(d[~beyond])
+    return [beyond_check(int(beyond.sum()) - at_edge, at_edge, len(d), value, within, surface.settings.epsilon)]
 
 
 def _runs_away(surface: FittedSurface, checks: Sequence[Check]) -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.checks.check import check
+from geofit.checks.outside import BEYOND, continued
 from geofit.checks.shape import RANGE_SHARE
 from geofit.data.accuracy import Accuracy, Check
 from geofit.data.given import SURFACES, arguments_checked, require_kind
@@ -16,8 +17,6 @@ from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.mesh import Mesh
-from geofit.geometry.mesh_projection import ASIDE
-from geofit.geometry.projection import Projection
 from geofit.geometry.trim_loops import beyond_edge
 from geofit.surfaces.mesh_surface import MeshSurface
 from geofit.surfaces.patch_surface import PatchSurface
@@ -52,15 +51,18 @@ def judge(
 
     Notes
     -----
-    sigma is that of Li, Miao, Liu and Wang (2011), eq. 3. A point outside the outline is measured as in a fit, to the
-    surface as it continues beneath the trimming; one beyond the edge of the patches, or of a face that ends at curves
-    or holes, is measured to the edge. Both count in sigma and are listed in ``accuracy.notes``.
+    sigma is that of Li, Miao, Liu and Wang (2011), eq. 3, over all points. A point outside the outline is measured as
+    in a fit, to the surface as it continues beneath the trimming; one beyond the edge of the patches, or of a face that
+    ends at trim loops, is measured to the edge. Both are listed in ``accuracy.notes``, and the check "beyond the
+    surface" gives sigma of the other points, which is the same in a fit and in its files.
     """
     require_kind("surface", surface, (PatchSurface, MeshSurface, HorizonFit), SURFACES)
     judged = HorizonFit(surface, points, settings or FitSettings(), name or surface.name)
     found = surface.project(points.xyz)
     if found.beyond is None:
         found = replace(found, beyond=beyond_edge(surface.patches, points.xyz - surface.origin, found))
+    assert found.beyond is not None
+    beyond = found.beyond | continued(judged)
     accuracy = check(judged, projection=found)
     if not surface.patches:
         accuracy = replace(
@@ -73,39 +75,15 @@ def judge(
                 ),
             ),
         )
-    return judged.with_(accuracy=_with_beyond(accuracy, points, found, _outside(judged, found)))
+    return judged.with_(accuracy=_with_names(accuracy, points, beyond))
 
 
-def _outside(surface: HorizonFit, found: Projection) -> NDArray[np.bool_]:
-    """Return (n,) which points lie outside the outline, on the surface as it continues there."""
-    if surface.outline is None or any(surface.loops):
-        return np.zeros(len(surface.points), bool)
-    import shapely
-
-    area = shapely.Polygon(surface.outline)
-    shapely.prepare(area)
-    within = shapely.dwithin(area, shapely.points(surface.points.xyz[:, :2]), ASIDE)
-    return np.asarray(~within & ~np.asarray(found.beyond, bool))
-
-
-def _with_beyond(accuracy: Accuracy, points: PointSet, found: Projection, outside: NDArray[np.bool_]) -> Accuracy:
-    """Add the points beyond the surface, each with its place in a file."""
-    assert found.beyond is not None
-    at_edge, beside = int(found.beyond.sum()), np.flatnonzero(found.beyond | outside)
-    text = message(
-        "fitting.points-beyond-edge",
-        "points beyond the surface's edge, measured to the edge: {count} of {total}",
-        count=at_edge,
-        total=accuracy.n,
-    )
-    continued = message(
-        "fitting.points-outside-outline",
-        "points outside the surface's outline, measured to the surface as it continues there: {count} of {total}",
-        count=int(outside.sum()),
-        total=accuracy.n,
-    )
-    texts = [*([text] if at_edge or not outside.any() else []), *([continued] if outside.any() else [])]
-    added = Check("beyond the surface", None, float(beside.size), 0.0, "points", texts[0])
+def _with_names(accuracy: Accuracy, points: PointSet, beyond: NDArray[np.bool_]) -> Accuracy:
+    """Name the points that the surface does not reach, each with its place in a file."""
+    if not beyond.any():
+        return accuracy
+    beside = np.flatnonzero(beyond)
+    (count,) = [one.text for one in accuracy.checks if one.name == BEYOND]
     named = [
         message("fitting.point-beyond-edge", "beyond the surface: {point}", point=points.describe(int(i)))
         for i in beside[:NAMED].tolist()
@@ -118,8 +96,7 @@ def _with_beyond(accuracy: Accuracy, points: PointSet, found: Projection, outsid
                 count=beside.size - NAMED,
             )
         )
-    warned = [note.with_severity("warning") for note in (*texts, *named)] if beside.size else []
-    return replace(accuracy, checks=(*accuracy.checks, added), notes=(*accuracy.notes, *warned))
+    return replace(accuracy, notes=(*accuracy.notes, *(note.with_severity("warning") for note in (count, *named))))
 
 
 def _mesh_checks(mesh: Mesh, points: PointSet) -> tuple[Check, ...]:

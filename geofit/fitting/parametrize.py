@@ -6,12 +6,14 @@ any frame: its parametrization is fitted through the section curves, and it take
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from geofit.checks.outside import outside
 from geofit.data.errors import FitError
 from geofit.data.long_arrays import covariance
 from geofit.data.messages import Message, message
@@ -111,13 +113,13 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
     """
     kind, reason = _choose_kind(points, settings)
     if kind == "sections":
-        return _parametrize_over_sections(points, reason)
+        return _parametrize_over_sections(points, [reason, *_study_area_notes(points, boundary)])
     section = section_labels(points)
     upright = kind == "best-plane"
     frame = best_plane_frame(points) if upright else map_frame(points, direction_of(section, points, boundary))
     local = frame.to_local(points.xyz)
     area = plan_box(local[:, :2])
-    notes = [reason]
+    notes = [reason, *(_study_area_notes(points, boundary) if upright else ())]
     if section is not points.section and (section != "").any():
         lines = len(np.unique(section[section != ""]))
         notes.append(
@@ -125,21 +127,35 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
         )
     if boundary is not None and kind == "map":
         corners = frame.plan(boundary)
-        low, high = corners.min(axis=0), corners.max(axis=0)
-        beyond = np.logical_or(*((x < a - 1e-9) | (x > b + 1e-9) for x, a, b in zip(local.T, low, high, strict=False)))
-        if beyond.any():
-            count = int(beyond.sum())
+        count = int(outside(boundary, points.xyz).sum())
+        if count:
             notes.append(
                 message(
                     "fitting.points-beyond-study-area",
-                    "points beyond the study area: {count}; the surface is widened to contain them",
+                    "points outside the study area: {count} of {total}; the surface is fitted to them and they count "
+                    "in sigma, but files of it end at the study area",
                     count=count,
+                    total=len(points),
                 ).with_severity("warning")
             )
         ends = [end(axis) for axis in local[:, :2].T for end in (np.min, np.max)]
         area = plan_box(np.concatenate([np.reshape(ends, (2, 2)).T, corners]))
     placed = np.ones(len(points), bool)
     return Parametrization(frame, local[:, :2], local[:, 2], area, tuple(notes), placed, section)
+
+
+def _study_area_notes(points: PointSet, boundary: Floats | None) -> list[Message]:
+    """Return what to say of a study area that does not end the surface."""
+    if boundary is None:
+        return []
+    count = int(outside(boundary, points.xyz).sum())
+    note = message(
+        "fitting.study-area-not-applied",
+        "the study area is not applied: only height fields over the map end at it; points outside: {count} of {total}",
+        count=count,
+        total=len(points),
+    )
+    return [note.with_severity("warning") if count else note]
 
 
 def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]:
@@ -183,7 +199,8 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
         return "map", message(
             "fitting.frame-map-despite-dip",
             "height field over the map: as a whole the points dip {dip:.0f}°, but they scatter across that "
-            "plane by {thickness:.0f} m over {length:.0f} x {width:.0f} m",
+            "plane by {thickness:.0f} m over {length:.0f} x {width:.0f} m; a surface that reaches the vertical needs "
+            "frame='best-plane'",
             dip=dip,
             thickness=float(extent[2]),
             length=float(max(extent[:2])),
@@ -193,7 +210,8 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
         return "best-plane", steep
     return "map", message(
         "fitting.frame-map-despite-overturned",
-        "height field over the map; some section lines run backwards, check the residuals there",
+        "height field over the map; some section lines run backwards, check the residuals there; a surface that "
+        "overhangs needs frame='sections' and two named sections or more",
     )
 
 
@@ -270,7 +288,7 @@ def direction_of(section: NDArray[np.str_], points: PointSet, boundary: Floats |
     return angle
 
 
-def _parametrize_over_sections(points: PointSet, reason: Message) -> Parametrization:
+def _parametrize_over_sections(points: PointSet, notes: Sequence[Message]) -> Parametrization:
     surface: Loft = loft(points)
     lines = len(surface.u)
     if lines < 2:
@@ -284,7 +302,7 @@ def _parametrize_over_sections(points: PointSet, reason: Message) -> Parametriza
     frame = replace(map_frame(points), kind="sections")
     local = frame.to_local(points.xyz)
     area = plan_box(surface.plane[surface.on_line])
-    return Parametrization(frame, surface.plane, local, area, (reason, *surface.notes), surface.on_line, points.section)
+    return Parametrization(frame, surface.plane, local, area, (*notes, *surface.notes), surface.on_line, points.section)
 
 
 def plan_box(plane: Floats) -> Rectangle:

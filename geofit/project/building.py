@@ -18,6 +18,7 @@ from geofit.project.provenance import ManualEdit, Move, MoveToPointEdit, Part, P
 
 __all__ = [
     "Given",
+    "around",
     "changed",
     "edited",
     "examined",
@@ -50,7 +51,21 @@ def given_of(site: Site, provenance: Provenance) -> Given:
             horizons[one.horizon] = site.horizons[one.horizon]
         else:
             horizons[one.horizon] = one.part.of(site.horizons[one.part.horizon])
-    return Given(Site(site.name, horizons, boundary=site.boundary, ground=site.ground, orientations=site.orientations))
+    return Given(around(site, horizons))
+
+
+def around(site: Site, horizons: Mapping[str, PointSet]) -> Site:
+    """Return horizons with what surfaces are compared with: study area, ground, dips, logged holes, faults."""
+    return Site(
+        site.name,
+        horizons,
+        boundary=site.boundary,
+        ground=site.ground,
+        orientations=site.orientations,
+        holes=site.holes,
+        boreholes=site.boreholes,
+        faults=site.faults,
+    )
 
 
 def make(provenance: Provenance, given: Given, progress: Progress | None = None) -> HorizonFit:
@@ -82,7 +97,7 @@ def make(provenance: Provenance, given: Given, progress: Progress | None = None)
 
 
 def with_site_checks(surface: HorizonFit, provenance: Provenance, site: Site) -> HorizonFit:
-    """Return a surface whose checks also check whether it agrees with the site's dips and ground."""
+    """Return a surface whose checks also check whether it agrees with what surrounds it."""
     from geofit.site.site_checks import add_site_checks
 
     return add_site_checks(surface, site, "" if provenance.part is None else provenance.part.horizon)

@@ -16,7 +16,7 @@ from geofit.project.body_building import BodyResult
 from geofit.project.body_record import BodyProvenance, BodySource
 from geofit.project.body_shelf import BodyShelf
 from geofit.project.body_sources import given_of_logs
-from geofit.project.building import Given, given_of
+from geofit.project.building import Given, around, given_of
 from geofit.project.fault_blocks import Blocks, site_with_blocks
 from geofit.project.horizon_commands import MergeHorizons
 from geofit.project.horizon_edits import renamed_body, renamed_provenance
@@ -498,7 +498,7 @@ class Document:
 
     def _give(self, horizons: Mapping[str, PointSet], faults: Iterable[Provenance]) -> Given:
         site = self._site
-        reduced = Site(site.name, horizons, boundary=site.boundary, ground=site.ground, orientations=site.orientations)
+        reduced = around(site, horizons)
         # One that was read from a file has lost its last digits; the model behind the patches need not travel.
         made = {fault: one.with_(model=None) for fault in faults if (one := self.shelf.surface(fault)) and one.model}
         return Given(reduced, made)

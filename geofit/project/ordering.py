@@ -14,7 +14,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.elevation import plan_map
 from geofit.project.fault_blocks import same_side
 from geofit.project.provenance import Part
-from geofit.site.order import Order, compare_horizons
+from geofit.site.order import Order, compare_pairs
 from geofit.site.separate import Separation, separate_horizons
 from geofit.site.site_checks import add_site_checks
 
@@ -43,12 +43,8 @@ def all_orders(
     progress: Progress,
 ) -> tuple[Order, ...]:
     """Compare pairs of horizons, the upper one first."""
-    found = []
     with threadpool_limits(limits=1):
-        for k, (upper, lower) in enumerate(pairs):
-            tell(progress, "order", k / len(pairs))
-            found.append(compare_horizons(surfaces[upper], surfaces[lower], ground))
-    return tuple(found)
+        return compare_pairs(surfaces, pairs, ground, lambda share: tell(progress, "order", share))
 
 
 def separated(surfaces: Mapping[str, HorizonFit], minimum: float, site: Site, *, progress: Progress) -> Separation:

@@ -23,7 +23,7 @@ from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.pipeline import fit_horizon
 from geofit.site.fault_blocks import fit_blocks
-from geofit.site.order import Order, compare_horizons
+from geofit.site.order import Order, compare_pairs
 from geofit.site.separate import Contradiction, separate_horizons
 from geofit.site.site_checks import add_site_checks
 from geofit.site.throw import FaultCut
@@ -313,13 +313,13 @@ def compare_in_order(site: Site, found: SiteFit) -> tuple[Order, ...]:
     """
     layers = [[name for name, horizon in found.horizon.items() if horizon == layer] for layer in site.order]
     pairs = [
-        (found.surfaces[a], found.surfaces[b])
+        (a, b)
         for upper, lower in combinations(layers, 2)
         for a in upper
         for b in lower
         if _same_side(site, found, a, b)
     ]
-    return tuple(compare_horizons(upper, lower, site.ground) for upper, lower in pairs)
+    return compare_pairs(found.surfaces, pairs, site.ground)
 
 
 def _same_side(site: Site, found: SiteFit, a: str, b: str) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -12,15 +12,18 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.accuracy import Check
 from geofit.data.errors import SettingsError
 from geofit.data.given import arguments_checked
-from geofit.data.messages import message
+from geofit.data.messages import EMPTY, Message, message
 from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.site.height_field import HeightField
 from geofit.site.overlap import HorizonCrossing, Overlap
 
-__all__ = ["Order", "compare_horizons", "orders", "require_sequence", "thickness"]
+__all__ = ["Order", "compare_horizons", "compare_pairs", "orders", "require_sequence", "thickness"]
 
 Floats = NDArray[np.float64]
+
+#: Share of a layer's volume that another horizon may claim without a word: what lattices leave.
+DISPUTED = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +32,11 @@ class Order:
 
     ``min``, ``mean`` and ``max`` are thicknesses in metres, negative where the horizons cross; ``thinnest`` and
     ``thickest`` the (x, y) of the extremes; ``crossings`` the places of crossing, the largest volume first.
+
+    ``volume`` (m3) is what lies between them where the upper one is above the lower one, and ``present`` (m2) the area
+    where that is thicker than ``least`` metres, the larger control error of the two: a thinner layer cannot be told
+    from none. Above the ground nothing is counted where a ground was given (``grounded``). ``disputed`` (m3) is how
+    much of it another horizon of the order claims, which crosses the two.
     """
 
     upper: str
@@ -40,6 +48,38 @@ class Order:
     thinnest: tuple[float, float]
     thickest: tuple[float, float]
     crossings: tuple[HorizonCrossing, ...]
+    volume: float = float("nan")
+    present: float = float("nan")
+    least: float = 0.0
+    grounded: bool = False
+    disputed: float = 0.0
+
+    @property
+    def layer(self) -> Message:
+        """How much lies between the horizons, in words that go on a sentence; empty if it was not measured."""
+        if not np.isfinite(self.volume):
+            return EMPTY
+        figures: dict[str, float | Message] = {
+            "volume": self.volume, "present": self.present, "least": self.least, "disputed": EMPTY,
+        }  # fmt: skip
+        if self.disputed > DISPUTED * self.volume:
+            figures["disputed"] = message(
+                "site.layer-disputed",
+                "; {volume:.0f} m3 of it lie above or below another horizon of the order, which crosses them",
+                volume=self.disputed,
+            )
+        if self.grounded:
+            return message(
+                "site.layer-below-ground",
+                "; between them, below the ground, {volume:.0f} m3 over {present:.0f} m2 where it is thicker than "
+                "{least:g} m{disputed}",
+                **figures,
+            )
+        return message(
+            "site.layer-between",
+            "; between them {volume:.0f} m3 over {present:.0f} m2 where it is thicker than {least:g} m{disputed}",
+            **figures,
+        )
 
     @property
     def crossed_area(self) -> float:
@@ -53,7 +93,7 @@ class Order:
 
     def check(self) -> Check:
         """Return the check; it fails where horizons cross below the ground, and is None without common area."""
-        names = {"upper": self.upper, "lower": self.lower}
+        names: dict[str, str | Message] = {"upper": self.upper, "lower": self.lower}
         if not self.area:
             return Check(
                 "order",
@@ -63,10 +103,11 @@ class Order:
                 "m",
                 message("site.horizons-share-no-area", "{upper} and {lower} share no area", **names),
             )
+        names["layer"] = self.layer
         if not self.crossings:
             text = message(
                 "site.upper-above-everywhere",
-                "{upper} lies above {lower} everywhere: {low:.2f} to {high:.2f} m, {mean:.2f} m on average",
+                "{upper} lies above {lower} everywhere: {low:.2f} to {high:.2f} m, {mean:.2f} m on average{layer}",
                 low=self.min,
                 high=self.max,
                 mean=self.mean,
@@ -82,14 +123,15 @@ class Order:
         if not below:
             text = message(
                 "site.horizons-cross-above-ground",
-                "{upper} lies below {lower} above the ground only (places: {count}): {area:.0f} m2, {volume:.0f} m3",
+                "{upper} lies below {lower} above the ground only (places: {count}): {area:.0f} m2, {volume:.0f} m3"
+                "{layer}",
                 **figures,
             )
             return Check("order", True, 0.0, 0.0, "m", text)
         text = message(
             "site.horizons-cross",
             "{upper} lies below {lower} (places: {count}): {area:.0f} m2, {volume:.0f} m3, deepest {depth:.2f} m "
-            "at ({x:.1f}, {y:.1f})",
+            "at ({x:.1f}, {y:.1f}){layer}",
             **figures,
         )
         return Check("order", False, max(crossing.depth for crossing in below), 0.0, "m", text)
@@ -139,7 +181,44 @@ def orders(
     """
     require_sequence(surfaces, sequence)
     reliefs = [HeightField(surfaces[name]) for name in sequence]
-    return tuple(_compare(upper, lower, ground) for upper, lower in combinations(reliefs, 2))
+    return tuple(
+        _compare(reliefs[i], reliefs[k], ground, reliefs[:i], reliefs[k + 1 :])
+        for i, k in combinations(range(len(reliefs)), 2)
+    )
+
+
+def compare_pairs(
+    surfaces: Mapping[str, HorizonFit],
+    pairs: Sequence[tuple[str, str]],
+    ground: Ground | None,
+    heard: Callable[[float], None] = lambda _: None,
+) -> tuple[Order, ...]:
+    """Compare pairs of an order, the upper horizon first; what lies above or below both by the pairs is considered.
+
+    Parameters
+    ----------
+    surfaces : mapping of str to HorizonFit
+        Surfaces by name.
+    pairs : sequence of tuple of str
+        Every two names of the order that can be compared.
+    ground : Ground or None
+        As in :func:`compare_horizons`.
+    heard : callable, optional
+        Called before each pair with the share of pairs done.
+
+    Raises
+    ------
+    SettingsError
+        If a surface is not a height field over the map.
+    """
+    reliefs = {name: HeightField(surfaces[name]) for name in dict.fromkeys(name for pair in pairs for name in pair)}
+    found = []
+    for k, (upper, lower) in enumerate(pairs):
+        heard(k / len(pairs))
+        above = [reliefs[one] for one, other in pairs if other == upper and (one, lower) in pairs]
+        below = [reliefs[other] for one, other in pairs if one == lower and (upper, other) in pairs]
+        found.append(_compare(reliefs[upper], reliefs[lower], ground, above, below))
+    return tuple(found)
 
 
 @arguments_checked
@@ -151,7 +230,8 @@ def compare_horizons(upper: HorizonFit, lower: HorizonFit, ground: Ground | None
     upper, lower : HorizonFit
         Height fields over the map.
     ground : Ground, optional
-        The ground surface: crossings above it are not counted as faults of the horizons.
+        The ground surface: crossings above it are not counted as faults of the horizons, nor what lies between the
+        horizons above it as volume.
 
     Returns
     -------
@@ -191,12 +271,20 @@ def require_sequence(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str]
         raise SettingsError(text)
 
 
-def _compare(upper: HeightField, lower: HeightField, ground: Ground | None) -> Order:
+def _compare(
+    upper: HeightField,
+    lower: HeightField,
+    ground: Ground | None,
+    above: Sequence[HeightField] = (),
+    below: Sequence[HeightField] = (),
+) -> Order:
     found = Overlap.between(upper, lower)
     if found is None:
         nan = float("nan")
         return Order(upper.name, lower.name, 0.0, nan, nan, nan, (nan, nan), (nan, nan), ())
     thin, thick = found.thinnest, found.thickest
+    least = max(upper.epsilon, lower.epsilon)
+    volume, present, disputed = found.layer(ground, least, above, below)
     return Order(
         upper=upper.name,
         lower=lower.name,
@@ -207,4 +295,9 @@ def _compare(upper: HeightField, lower: HeightField, ground: Ground | None) -> O
         thinnest=thin[:2],
         thickest=thick[:2],
         crossings=found.crossings(ground),
+        volume=volume,
+        present=present,
+        least=least,
+        grounded=ground is not None,
+        disputed=disputed,
     )

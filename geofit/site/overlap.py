@@ -8,7 +8,7 @@ are settled, and the lines of crossing are exact on its edges.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -118,7 +118,50 @@ class Overlap:
     @property
     def mean(self) -> float:
         """Mean thickness over the common area, metres."""
-        return _mean(self._finer(self.upper))
+        return _mean(self._fine_upper)
+
+    def layer(
+        self, ground: Ground | None, least: float, above: Sequence[HeightField] = (), below: Sequence[HeightField] = ()
+    ) -> tuple[float, float, float]:
+        """Return the volume between the horizons, the area where that is thicker than ``least``, and what is disputed.
+
+        Where the upper one lies below the lower one there is nothing, nor above the ground; m3, m2 and m3. Disputed is
+        the volume that lies over a horizon that should be ``above`` both, or under one that should be ``below`` them.
+        """
+        window = self._fine_upper
+        known = np.isfinite(window.value)
+        plan = window.plan[known]
+        top = self.upper(*plan.T)
+        low = top - window.value[known]
+        if ground is not None:
+            over = ground.elevation(*plan.T)
+            top, low = np.fmin(top, over), np.fmin(low, over)
+        cap, floor = top, low
+        for one in above:
+            cap = np.fmin(cap, one(*plan.T))
+        for one in below:
+            floor = np.fmax(floor, one(*plan.T))
+        triangles = lattice_triangles((window.value.shape[0], window.value.shape[1]))
+        whole = known.ravel()[triangles].all(axis=1)
+        triangles = triangles[whole]
+        size = _signed(window.plan.reshape(-1, 2)[triangles])
+
+        def over_zero(thickness: Floats, least: float = 0.0) -> tuple[float, float]:
+            value = np.full(window.value.shape, np.nan)
+            value[known] = thickness
+            value = value.ravel()[triangles]
+            # Triangles without any of it are left out: shares are known for those that have a part.
+            some = (value > least).any(axis=1)
+            area, volume = _below(least - value[some])
+            return -float(size[some] @ volume), float(size[some] @ area)
+
+        volume = over_zero(top - low)[0]
+        disputed = volume - over_zero(cap - floor)[0] if len(above) or len(below) else 0.0
+        return volume, over_zero(top - low, least)[1], max(disputed, 0.0)
+
+    @cached_property
+    def _fine_upper(self) -> _Window:
+        return self._finer(self.upper)
 
     @property
     def thinnest(self) -> Extreme:

@@ -1,4 +1,4 @@
-"""A horizon's surface beside the rest of its site: measured dips, and the ground."""
+"""A horizon's surface beside the rest of its site: measured dips, the study area, the ground and holes."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from geofit.data.site import Ground, Orientations, Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.clip import inside
 from geofit.site.dips import check_dips
+from geofit.site.hole_contacts import check_holes
+from geofit.site.study_area import check_area
 from geofit.site.topography import check_ground
 
 __all__ = ["add_site_checks", "ground_tolerance", "measured_on"]
@@ -23,14 +25,14 @@ CELL_SHARE = 0.1
 
 
 def add_site_checks(surface: HorizonFit, site: Site, horizon: str = "") -> HorizonFit:
-    """Return a checked surface whose checks also check whether it agrees with dips and ground.
+    """Return a checked surface whose checks also check whether it agrees with dips, study area, ground and holes.
 
     Parameters
     ----------
     surface : HorizonFit
         With its accuracy.
     site : Site
-        Its ``orientations`` that name the horizon, and its ``ground``.
+        Its ``orientations`` that name the horizon, its ``boundary``, ``ground`` and ``holes``.
     horizon : str
         Name of the horizon where the surface is one block of it: then the dips within the block's outline count.
     """
@@ -49,10 +51,24 @@ def add_site_checks(surface: HorizonFit, site: Site, horizon: str = "") -> Horiz
             ),
         ),
         guarded(
+            lambda: check_area(surface, site.boundary, surface.name in site.faults),
+            None,
+            lambda reason: missing.append(
+                message("site.area-not-compared", "the study area was not compared: {reason}", reason=reason)
+            ),
+        ),
+        guarded(
             lambda: check_ground(surface, site.ground, tolerance),
             None,
             lambda reason: missing.append(
                 message("site.ground-not-compared", "the ground was not compared: {reason}", reason=reason)
+            ),
+        ),
+        guarded(
+            lambda: check_holes(surface, site, horizon),
+            None,
+            lambda reason: missing.append(
+                message("site.holes-not-compared", "the holes were not compared: {reason}", reason=reason)
             ),
         ),
     )

@@ -28,7 +28,7 @@ def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -
 
     A horizon that crops out goes on above the ground as it was before erosion: that is reported, not a failure. Above
     the ground at one of its own points it is wrong, and so it is between three points close to each other that lie
-    deeper below the ground than it stands above.
+    deeper below the ground than it stands above, and whose plane does so there: elsewhere a valley cuts the horizon.
 
     Parameters
     ----------
@@ -58,7 +58,9 @@ def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -
     above = known & (height > tolerance)
     at_point = np.arange(len(plan)) >= len(x)
     depth = np.where(known, -height, 0.0)[len(x) :]
-    wrong = above & (at_point | (_buried(plan, own, depth) > np.maximum(height, tolerance)))
+    least, level = _around(plan, surface.points.xyz, depth)
+    deep = np.minimum(least, z - height - np.where(np.isfinite(level), level, np.inf))
+    wrong = above & (at_point | (deep > np.maximum(height, tolerance)))
     area = {"area": float((above & ~at_point).sum()) * cell, "tolerance": tolerance}
     if wrong.any():
         worst = np.flatnonzero(wrong)[np.argsort(-height[wrong], kind="stable")]
@@ -94,19 +96,26 @@ def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -
     return Check("above ground", True, max(float(height[known].max()), 0.0), tolerance, "m", text)
 
 
-def _buried(plan: Floats, own: Floats, depth: Floats) -> Floats:
-    """How deep (m) under the ground all three points around each place lie, if none of them is far off; else 0."""
-    points, first = np.unique(own, axis=0, return_index=True)
+def _around(plan: Floats, own: Floats, depth: Floats) -> tuple[Floats, Floats]:
+    """Return how deep (m) under the ground all three points around each place lie, 0 if one of them is far off.
+
+    Also return the elevation of their plane there, nan where there are none.
+    """
+    points, first = np.unique(own[:, :2], axis=0, return_index=True)
     # LAPACK starts threads even for matrices of two columns, which costs a hundred times the work.
     with threadpool_limits(limits=1):
         if len(points) < 3 or np.linalg.matrix_rank(points - points[0], tol=1e-6) < 2:
-            return np.zeros(len(plan))
+            return np.zeros(len(plan)), np.full(len(plan), np.nan)
         mesh = Delaunay(points - points[0])
         triangle = mesh.find_simplex(plan - points[0])
+        slope = mesh.transform[triangle, :2]
+        share = np.einsum("nij,nj->ni", slope, plan - points[0] - mesh.transform[triangle, 2])
+    share = np.column_stack([share, 1.0 - share.sum(axis=1)])
+    level = (share * own[first, 2][mesh.simplices[triangle]]).sum(axis=1)
     corners = mesh.points[mesh.simplices]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     least = np.where(longest <= REACH * np.median(longest), depth[first][mesh.simplices].min(axis=1), 0.0)
-    return np.where(triangle >= 0, least[triangle], 0.0)
+    return np.where(triangle >= 0, least[triangle], 0.0), np.where(triangle >= 0, level, np.nan)
 
 
 def _nodes(ground: Ground, surface: HorizonFit) -> tuple[Floats, Floats, float]:

@@ -441,3 +441,22 @@ def test_a_patch_turned_over_in_an_unknown_frame_is_the_smaller_part():
 
 def found_total(one):
     return int(str(one.text).split("of ")[1].split()[0])
+
+
+def test_a_valley_between_deep_points_is_erosion_and_a_bulge_there_is_wrong():
+    """Points 50 m below a plateau on a grid of 100 m; between two rows of them lies a valley 70 m deep."""
+    x = y = np.linspace(0, 1000, 101)
+    places = np.stack(np.meshgrid(np.linspace(50, 950, 10), np.linspace(50, 950, 10)), axis=-1).reshape(-1, 2)
+    points = np.column_stack([places, np.zeros(100)]) + ORIGIN
+    plateau = np.full((101, 101), ORIGIN[2] + 50.0)
+    valley = plateau - 70 * np.exp(-(((x - 500) / 15) ** 2))
+
+    def found(horizon_height, ground):
+        patch = height_field(60, 60, size=(1000.0, 1000.0), z=horizon_height)
+        return check_ground(horizon([patch], points), Ground(ORIGIN[0] + x, ORIGIN[1] + y, ground), 1.0)
+
+    eroded = found(lambda x, y: 0 * x, valley)
+    assert eroded.passed is None
+    assert eroded.value == pytest.approx(20.0, abs=1.0)
+    bulge = found(lambda x, y: 90 * np.exp(-(((x - 500) / 30) ** 2) - ((y - 500) / 30) ** 2), plateau)
+    assert bulge.passed is False

@@ -251,3 +251,24 @@ def test_a_steep_height_field_that_is_no_plane_stays_one_over_the_map():
         z = np.tan(np.radians(60)) * plan[:, 0] + 1.6 * wave * np.sin(plan[:, 0] / wave)
         points = PointSet(np.column_stack([plan + np.array((EASTING, NORTHING)), z]))
         assert not turns_over(points, best_plane_frame(points))
+
+
+def test_the_note_on_a_steep_surface_over_the_map_names_the_frame_that_it_needs():
+    """It scatters too far across its best plane for it to be chosen, and is met there and not over the map."""
+    rng = np.random.default_rng(1)
+    along, down = rng.uniform(0, [[300], [200]], (2, 300))
+    height = 32.0 * np.sin(down / 25)
+    dip = np.radians(62)
+    rise = np.column_stack(
+        [down * np.cos(dip) + height * np.sin(dip), along, height * np.cos(dip) - down * np.sin(dip)]
+    )
+    points = PointSet(rise + np.array((EASTING, NORTHING, 500)))
+    (note, *_) = parametrize(points, SETTINGS, None).notes
+    assert note.code == "fitting.frame-map-despite-dip"
+    assert "frame='best-plane'" in note.template
+    over_map, over_plane = (
+        np.abs(fit_horizon(points, FitSettings(frame=frame)).accuracy.residuals).max()
+        for frame in ("map", "best-plane")
+    )
+    assert over_map > 10
+    assert over_plane < 0.1

@@ -14,7 +14,7 @@ from geofit.data.messages import Message
 from geofit.data.site import Ground
 from geofit.sample import write_site
 from geofit.site.height_field import HeightField
-from geofit.site.order import compare_horizons, orders, thickness
+from geofit.site.order import compare_horizons, compare_pairs, orders, thickness
 from geofit.site.overlap import TOUCH
 from geofit.site.zero_contours import zero_contours
 from geofit.splines import bspline
@@ -310,3 +310,81 @@ def test_the_site_file_states_order_and_faults(tmp_path):
 def test_an_order_or_fault_that_cannot_be_is_refused_by_name(tmp_path, order, faults, code, params):
     with refused(InputError, code, **params):
         read_small(tmp_path, order, faults)
+
+
+def wedge(name="base"):
+    """A plane that rises through zero at the middle of the area: below a flat top it pinches out there."""
+    return surface(lambda x, y: (x - 500.0) / 50.0, name)
+
+
+def test_what_lies_between_horizons_ends_where_they_cross():
+    order = compare_horizons(flat(0.0, "top"), wedge())
+    # Ten metres thick in the west, zero in the middle; 0.5 m, the control error, 25 m before it.
+    assert order.volume == pytest.approx(0.5 * 500 * 10 * 700, rel=2e-3)
+    assert order.present == pytest.approx(475 * 700, rel=2e-3)
+    assert order.mean == pytest.approx(0.0, abs=1e-6)
+    layer = order.check().text.params["layer"]
+    assert layer.code == "site.layer-between"
+    assert (layer.params["volume"], layer.params["present"]) == (order.volume, order.present)
+
+
+@pytest.mark.parametrize(
+    ("height", "volume", "present"),
+    [
+        (20.0, 10.0 * 700_000, 700_000),  # above both
+        (4.0, 4.0 * 700_000, 700_000),  # between them
+        (-5.0, 0.0, 0.0),  # below both
+    ],
+)
+def test_above_the_ground_nothing_lies_between_horizons(height, volume, present):
+    x, y = ORIGIN[0] + np.linspace(0, 1000, 11), ORIGIN[1] + np.linspace(0, 700, 8)
+    ground = Ground(x, y, np.full((8, 11), ORIGIN[2] + height))
+    order = compare_horizons(flat(10.0, "top"), flat(0.0, "base"), ground)
+    assert (order.volume, order.present) == pytest.approx((volume, present), rel=1e-6, abs=1e-6)
+    assert (order.area, order.mean) == pytest.approx((700_000, 10.0), rel=1e-6)
+    assert order.check().passed
+    assert order.check().text.params["layer"].code == "site.layer-below-ground"
+
+
+def test_a_valley_cuts_what_lies_between_horizons():
+    """A ground that falls through both horizons along the easting: the rock between them is a trapezium."""
+    x, y = ORIGIN[0] + np.linspace(0, 1000, 201), ORIGIN[1] + np.linspace(0, 700, 8)
+    ground = Ground(x, y, np.tile(ORIGIN[2] + 20.0 - 0.04 * (x - x[0]), (8, 1)))
+    order = compare_horizons(flat(10.0, "top"), flat(0.0, "base"), ground)
+    # Whole for 250 m, then thinner over the next 250 m, gone beyond.
+    assert order.volume == pytest.approx((10 * 250 + 0.5 * 10 * 250) * 700, rel=2e-3)
+    assert order.present == pytest.approx((500 - 12.5) * 700, rel=2e-3)
+
+
+def test_horizons_that_were_separated_by_centimetres_are_no_layer():
+    order = compare_horizons(flat(0.04, "top"), flat(0.0, "base"))
+    assert order.check().passed
+    assert order.present == 0.0
+
+
+def test_what_another_horizon_of_the_order_claims_of_a_layer_is_stated():
+    """A flat unconformity cuts a tilted layer of 20 m, whose upper horizon rises above it in the east."""
+    surfaces = {
+        "U": flat(0.0, "U"),
+        "A": wedge("A"),
+        "B": surface(lambda x, y: (x - 500.0) / 50.0 - 20.0, "B"),
+    }
+    over, whole, layer = orders(surfaces, ["U", "A", "B"])
+    assert layer.check().passed
+    assert layer.volume == pytest.approx(20 * 700_000, rel=1e-6)
+    assert layer.disputed == pytest.approx(0.5 * 500 * 10 * 700, rel=5e-3)
+    disputed = layer.layer.params["disputed"]
+    assert disputed.code == "site.layer-disputed"
+    assert disputed.params["volume"] == layer.disputed
+    assert (over.disputed, whole.disputed) == pytest.approx((0.0, 0.0), abs=1.0)
+    assert not over.layer.params["disputed"]
+    assert compare_horizons(surfaces["A"], surfaces["B"]).disputed == 0.0
+    pairs = compare_pairs(surfaces, [("U", "A"), ("U", "B"), ("A", "B")], None)
+    assert [one.disputed for one in pairs] == [over.disputed, whole.disputed, layer.disputed]
+
+
+def test_a_horizon_that_rises_into_a_layer_from_below_claims_what_is_under_it():
+    surfaces = {"U": flat(20.0, "U"), "A": flat(0.0, "A"), "B": wedge("B")}
+    (layer, *_) = orders(surfaces, ["U", "A", "B"])
+    assert layer.volume == pytest.approx(20 * 700_000, rel=1e-6)
+    assert layer.disputed == pytest.approx(0.5 * 500 * 10 * 700, rel=5e-3)
