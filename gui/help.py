@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from PySide6.QtCore import QObject, QUrl
-from PySide6.QtGui import QDesktopServices
-from PySide6.QtWidgets import QDialog, QMenuBar, QMessageBox, QWidget
+from PySide6.QtGui import QDesktopServices, QKeySequence, QShortcut
+from PySide6.QtWidgets import QApplication, QDialog, QMenuBar, QMessageBox, QWidget
 
 from geofit import __version__
 from geofit.data.site import Site
@@ -20,8 +20,14 @@ from geofit.gui.view3d.mouse import Scheme
 
 __all__ = ["Help"]
 
-#: The page of the tutorial in a checkout; an installed package has the short form below.
-TUTORIAL = Path(__file__).resolve().parents[1] / "docs" / "tutorial.md"
+#: The pages in a checkout; an installed package has the short form of the tutorial below.
+PAGES = Path(__file__).resolve().parents[1] / "docs"
+#: Pages of dialogs, by their class; all others have the tutorial.
+_PAGE_OF = {
+    "ImportWizard": "formats_in", "IssuesDialog": "formats_in", "RockVolumeDialog": "formats_in",
+    "SurveyDialog": "formats_in", "ExportDialog": "formats_out", "BodyStepDialog": "formats_out",
+    "SectionSheetDialog": "formats_out", "PlanSheetDialog": "formats_out", "CompareDialog": "settings",
+}  # fmt: skip
 
 
 class Help(QObject):
@@ -31,10 +37,20 @@ class Help(QObject):
         super().__init__(window)
         self._window = window
 
+    def answer(self, dialog: QDialog) -> None:
+        """Let F1 open the page of a dialog, which the keys of the main window do not reach."""
+        page = _PAGE_OF.get(type(dialog).__name__, "tutorial")
+        QShortcut(QKeySequence("F1"), dialog).activated.connect(lambda: self.page(page))
+
     def tutorial(self) -> None:
-        """Open the tutorial, or tell the way through the application in short."""
-        if TUTORIAL.is_file():
-            QDesktopServices.openUrl(QUrl.fromLocalFile(str(TUTORIAL)))
+        """Open the tutorial."""
+        self.page("tutorial")
+
+    def page(self, name: str) -> None:
+        """Open a page, or tell the way through the application in short."""
+        page = PAGES / f"{name}.md"
+        if page.is_file():
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(page)))
             return
         self._box(
             self.tr("The geofit workflow"),
@@ -103,6 +119,7 @@ class Help(QObject):
         )
 
     def _box(self, title: str, text: str) -> None:
-        box = QMessageBox(QMessageBox.Icon.NoIcon, title, text, QMessageBox.StandardButton.Close, self._window)
+        over = QApplication.activeModalWidget() or self._window
+        box = QMessageBox(QMessageBox.Icon.NoIcon, title, text, QMessageBox.StandardButton.Close, over)
         box.setIconPixmap(self._window.windowIcon().pixmap(48))
         box.exec()

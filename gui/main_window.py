@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QChildEvent, QEvent, QSize, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
-from PySide6.QtWidgets import QApplication, QInputDialog, QMainWindow, QTabBar
+from PySide6.QtWidgets import QApplication, QDialog, QInputDialog, QMainWindow, QTabBar
 
 from geofit.gui.actions import Actions
 from geofit.gui.activity import Activity
@@ -73,8 +73,9 @@ class MainWindow(QMainWindow):
         self.steps: StepsDialog | None = None
         self.setWindowIcon(application_icon())
         self.setAcceptDrops(True)
-        self.setMinimumSize(QSize(960, 640))
-        self.resize(1280, 800)
+        available = self.screen().availableSize()
+        self.setMinimumSize(QSize(960, 640).boundedTo(available))
+        self.resize(QSize(1280, 800).boundedTo(available))
         self.activity = Activity(self)
         self.actions_ = Actions(self)
         self.menus = Menus(self, self.actions_, session.stack)
@@ -126,8 +127,9 @@ class MainWindow(QMainWindow):
 
     @property
     def busy(self) -> bool:
-        """Whether something is computed here or in the dialog of a survey, which would go with the window."""
-        return self.activity.busy or (self.surveys.dialog is not None and self.surveys.dialog.running)
+        """Whether something is computed or filmed, also in the dialog of a survey: it would go with the window."""
+        survey = self.surveys.dialog
+        return self.activity.busy or self.morphing.filming.running or (survey is not None and survey.running)
 
     def take_over(self, other: MainWindow) -> None:
         """Go on with what another window on the session has found and the session itself does not keep."""
@@ -136,6 +138,7 @@ class MainWindow(QMainWindow):
         self.showing.take_over(other.showing)
         self.delivering.take_over(other.delivering)
         self.panels.view.take_over(other.panels.view)
+        self.morphing.take_over(other.morphing)
         self._choose_in(self.actions_.exaggerations, self.panels.view.canvas.stretch)
         for name in ("orthographic", "faded", "section", "clip"):
             self.actions_[name].setChecked(other.actions_[name].isChecked())
@@ -194,10 +197,15 @@ class MainWindow(QMainWindow):
         return False
 
     def childEvent(self, event: QChildEvent) -> None:  # noqa: N802
-        """Draw the tabs of docks close together, in each bar that Qt makes for them."""
+        """Draw the tabs of docks close together, in each bar that Qt makes for them; let F1 help in each dialog."""
         super().childEvent(event)
-        if event.type() == QEvent.Type.ChildPolished and isinstance(bar := event.child(), QTabBar):
-            bar.setStyle(self._tab_style)
+        if event.type() != QEvent.Type.ChildPolished:
+            return
+        child = event.child()
+        if isinstance(child, QTabBar):
+            child.setStyle(self._tab_style)
+        elif isinstance(child, QDialog):
+            self.help.answer(child)
 
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Draw in the colours of another theme."""

@@ -86,16 +86,31 @@ class Morphing(QObject):
         document.site_changed.connect(self._on_site)
         self.filming = Filming(workspace.view, activity, self)
         self.filming.written.connect(self._filmed)
-        self.filming.ended.connect(lambda: self.drag(self._panel.timeline.tau))
+        self.filming.ended.connect(self._settle)
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self._draw)
 
     def close(self) -> None:
         """Listen no more; the document may live longer than the window."""
         self._panel.rest()
+        self.filming.ended.disconnect(self._settle)
         self.filming.stop()
         self._later.stop()
         self._document.site_changed.disconnect(self._on_site)
+
+    def take_over(self, other: Morphing) -> None:
+        """Go on with the way of another window on the document, where its slider rests."""
+        view = self.view = other.view
+        self._panel.take_over(other._panel)
+        self._show_bodies()
+        if view is None:
+            return
+        tau = other._panel.timeline.tau
+        self._show_preview(view, tau)
+        if view.full is None:
+            self.drag(tau)
+        else:
+            self._show_full(view)
 
     @property
     def idle(self) -> bool:
@@ -139,8 +154,8 @@ class Morphing(QObject):
             return
         if self._frame is not None:
             self._frame.cancel()
-        self._frame = run(self, frame_body, view.full, tau, on_done=self._framed, title="")
-        self._frame.ended.connect(self._frame_ended)
+        task = self._frame = run(self, frame_body, view.full, tau, on_done=self._framed, title="")
+        task.ended.connect(lambda: self._frame_ended(task))
 
     def ask_name(self) -> None:
         """Ask what a frame is called as a body."""
@@ -243,18 +258,21 @@ class Morphing(QObject):
 
     def _previewed(self, view: MorphView, shapes: list[Any]) -> None:
         self.view = view
-        panel, morph = self._panel, view.preview
-        panel.timeline.show_ends(morph.knots.tolist(), view.way.names, [event.tau for event in view.events])
-        panel.timeline.put(0.0)
-        panel.set_ready(True, False)
-        self._show_ends()
+        self._show_preview(view, 0.0)
         self.drag(0.0)
-        self._say(view)
-        if morph.unreached and not view.way.seeds:
+        if view.preview.unreached and not view.way.seeds:
             # What is never reached is said before the run: Join again goes on, with or without seeds.
-            panel.set_running(False)
+            self._panel.set_running(False)
             return
         self._finish(view, shapes)
+
+    def _show_preview(self, view: MorphView, tau: float) -> None:
+        timeline = self._panel.timeline
+        timeline.show_ends(view.preview.knots.tolist(), view.way.names, [event.tau for event in view.events])
+        timeline.put(tau)
+        self._panel.set_ready(True, False)
+        self._show_ends()
+        self._say(view)
 
     def _finish(self, view: MorphView, shapes: list[Any]) -> None:
         self._panel.set_running(True)
@@ -265,6 +283,10 @@ class Morphing(QObject):
         if self.view is None or self.view.way != view.way:
             return
         self.view = view
+        self._show_full(view)
+
+    def _show_full(self, view: MorphView) -> None:
+        """Show the curves, and the frame on the full grid."""
         rows = view.rows
         self._panel.timeline.show_curves(
             [row.tau for row in rows], [row.volume for row in rows], [float(row.euler) for row in rows]
@@ -295,11 +317,15 @@ class Morphing(QObject):
         self._show_frame(view.preview.surface(tau), tau)
 
     def _framed(self, body: MorphBody) -> None:
-        if self.view is not None and abs(body.tau - self._panel.timeline.tau) < 1e-9 and self._wanted is None:
+        if self.view is not None and abs(body.tau - self._panel.timeline.tau) < 1e-9:
+            # A preview of the same place that is still to be drawn would hide it.
+            self._wanted = None
             self._show_frame(TriangleMesh(body.overview.vertices + body.origin, body.overview.triangles), body.tau)
 
-    def _frame_ended(self) -> None:
-        self._frame = None
+    def _frame_ended(self, task: Task) -> None:
+        # One that was cancelled may end after the next has begun.
+        if self._frame is task:
+            self._frame = None
 
     def _show_frame(self, mesh: TriangleMesh, tau: float) -> None:
         view = self.view
@@ -335,6 +361,10 @@ class Morphing(QObject):
     def _filmed(self, path: Path) -> None:
         _LOG.info(message("gui.log-file-written", "Wrote {file}", file=str(path.resolve())))
         self.reported.emit(self.tr("Wrote {names}.").format(names=path.resolve()))
+
+    def _settle(self) -> None:
+        """Show again the frame where the slider is, after a film."""
+        self.rest(self._panel.timeline.tau)
 
     def _exported(self, done: MorphRun) -> None:
         folder = done.files[0].resolve().parent

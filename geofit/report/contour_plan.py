@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
+    from matplotlib.transforms import Bbox
 
 __all__ = ["draw_contour_plan", "draw_map", "map_corners", "map_handles", "plan_caption", "plan_sheet"]
 
@@ -155,7 +156,7 @@ def _label(axes: Axes, line: Floats, text: str, labelled: list[Floats], reach: f
 
 
 def _base_map(axes: Axes, result: HorizonResult, wide: float) -> None:
-    """Draw the study area, the core, section lines with their names, and holes with theirs."""
+    """Draw the study area, the core, section lines with their names, and holes with theirs where there is room."""
     surface, site = result.surface, result.site
     if site.boundary is not None:
         ring = np.concatenate([site.boundary, site.boundary[:1]])
@@ -168,18 +169,35 @@ def _base_map(axes: Axes, result: HorizonResult, wide: float) -> None:
         start = section.line[0]
         axes.text(start[0], start[1], section.name, size=5.6, color=MUTED, ha="center", va="center", zorder=5,
                   clip_on=True, bbox={"facecolor": PAPER, "edgecolor": "none", "pad": 0.4})  # fmt: skip
+    taken = [text.get_window_extent() for text in axes.texts]
     named: list[Floats] = []
     room = np.array([0.062, 0.03]) * float(np.ptp(axes.get_xlim())) * 146.0 / max(wide, 1.0)
     for hole in site.holes:
         axes.plot(*hole.xyz[:1, :2].T, "o", ms=2.6, mfc="none", mec=MUTED, mew=0.6, zorder=3)
         collar = hole.xyz[0, :2]
-        if all((np.abs(collar - other) > room).any() for other in named):
+        if all((np.abs(collar - other) > room).any() for other in named) and _named(axes, hole.name, collar, taken):
             named.append(collar)
-            # Towards the middle where the frame is near.
-            left, low = collar[0] > axes.get_xlim()[1] - room[0], collar[1] > axes.get_ylim()[1] - room[1]
-            axes.annotate(hole.name, (collar[0], collar[1]), xytext=(-2.2 if left else 2.2, -1.6 if low else 1.6),
-                          textcoords="offset points", size=4.8, ha="right" if left else "left",
-                          va="top" if low else "baseline", color=MUTED, zorder=4, annotation_clip=True)  # fmt: skip
+
+
+def _named(axes: Axes, name: str, collar: Floats, taken: list[Bbox]) -> bool:
+    """Write a name at the first side of its hole where it lies in the frame and covers no other text, if there is one.
+
+    Its box is appended to those that are ``taken``, pixels.
+    """
+    frame = axes.get_window_extent()
+    for right, up in ((1, 1), (-1, 1), (1, -1), (-1, -1)):
+        text = axes.annotate(
+            name, (collar[0], collar[1]), xytext=(2.2 * right, 1.6 * up), textcoords="offset points", size=4.8,
+            ha="left" if right > 0 else "right", va="baseline" if up > 0 else "top", color=MUTED, zorder=4,
+            annotation_clip=True,
+        )  # fmt: skip
+        box = text.get_window_extent()
+        inside = frame.x0 <= box.x0 and box.x1 <= frame.x1 and frame.y0 <= box.y0 and box.y1 <= frame.y1
+        if inside and not box.count_overlaps(taken):
+            taken.append(box)
+            return True
+        text.remove()
+    return False
 
 
 def _points(axes: Axes, result: HorizonResult) -> None:

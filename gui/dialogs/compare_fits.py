@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QComboBox,
@@ -65,7 +65,7 @@ class CompareDialog(QDialog):
         self.fits, self._present = tuple(fits), present
         self._linking = self._ended = False
         self.setWindowTitle(self.tr("Compare fits of {name}").format(name=present.horizon))
-        self.resize(1180, 740)
+        self.resize(QSize(1180, 740).boundedTo(self.screen().availableSize()))
         self.views = (SceneView(self), SceneView(self))
         self.chosen = (QComboBox(), QComboBox())
         self.use = (QPushButton(self.tr("Take A")), QPushButton(self.tr("Take B")))
@@ -73,6 +73,7 @@ class CompareDialog(QDialog):
         self.words.setWordWrap(True)
         self.words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.table = QTableWidget(0, 3)
+        self.table.setTabKeyNavigation(False)
         self.table.setAccessibleName(self.tr("Settings that differ, and figures of both fits"))
         self.table.setHorizontalHeaderLabels([self.tr("Setting or figure"), "A", "B"])
         self.table.verticalHeader().hide()

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 
 from geofit import __version__
 from geofit.data.errors import GeofitError, InputError
-from geofit.gui.translate import failure, translated
+from geofit.gui.translate import bare, failure, translated
 
 __all__ = ["ErrorDialog"]
 
@@ -58,12 +58,14 @@ class ErrorDialog(QDialog):
         self._text.hide()
         more = QPushButton(self.tr("&Details"))
         more.setCheckable(True)
+        self._text.setAccessibleName(bare(more.text()))
         more.toggled.connect(self._show_details)
         copy = QPushButton(self.tr("&Copy details"))
         copy.clicked.connect(lambda: QGuiApplication.clipboard().setText(self.details))
-        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        buttons = QDialogButtonBox()
         buttons.addButton(more, QDialogButtonBox.ButtonRole.ActionRole)
         buttons.addButton(copy, QDialogButtonBox.ButtonRole.ActionRole)
+        close = buttons.addButton(QDialogButtonBox.StandardButton.Close)
         buttons.rejected.connect(self.reject)
         layout = QGridLayout(self)
         layout.setSizeConstraint(QGridLayout.SizeConstraint.SetMinAndMaxSize)
@@ -73,6 +75,8 @@ class ErrorDialog(QDialog):
         layout.addWidget(self.message, 1, 1)
         layout.addWidget(self._text, 2, 0, 1, 2)
         layout.addWidget(buttons, 3, 0, 1, 2)
+        # Now that it is in the dialog; else Enter would press the first button.
+        close.setDefault(True)
 
     def _message(self, error: Exception) -> str:
         if isinstance(error, InputError) and error.remedy:

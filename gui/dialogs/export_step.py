@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -82,7 +83,7 @@ class ExportDialog(TaskDialog):
         self.stated = SignedFields(self, title or TitleBlock(), datum)
         self.author, self.organisation = self.stated.author, self.stated.organisation
         self.origin, self.certificate = self.stated.origin, self.stated.certificate
-        self.together, self.apart = QRadioButton(self.tr("&One file")), QRadioButton(self.tr("One file per &horizon"))
+        self.together, self.apart = QRadioButton(self.tr("O&ne file")), QRadioButton(self.tr("One file per &horizon"))
         self.table = DataTable()
         self.table.setAccessibleName(self.tr("What the reader found in the file"))
         # The form stays where it is when the table comes.
@@ -165,6 +166,9 @@ class ExportDialog(TaskDialog):
         layout.addLayout(self.message_row)
         layout.addWidget(self.table, 1)
         layout.addLayout(self.foot(self.folder))
+        # Tab follows the form; what was made first would come first.
+        for before, after in pairwise(self.fields):
+            QWidget.setTabOrder(before, after)
         self.resize(QSize(960, 640).boundedTo(self.screen().availableSize()))
 
     def _browse(self) -> None:

@@ -24,6 +24,8 @@ class HorizonBuilder(QDialog):
         column = QVBoxLayout(self)
         column.addWidget(self.form, 1)
         column.addWidget(buttons)
+        # Now that it is in the dialog; else Enter would press the first button, Up.
+        self.form.add.setDefault(True)
         self.resize(860, 500)
 
     def done(self, result: int) -> None:

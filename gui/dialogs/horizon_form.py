@@ -64,6 +64,7 @@ class HorizonForm(QWidget):
         self.codes.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.codes.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.codes.horizontalHeader().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        self.codes.setTabKeyNavigation(False)
         self.codes.setAccessibleName(self.tr("Codes of the interval logs, the highest first"))
         self._fill()
         self.limit, self.occurrence = QComboBox(), QComboBox()

@@ -37,6 +37,8 @@ class IssuesDialog(QDialog):
         text = self.tr("Rows read: {read} = {used} used + {listed} listed here.")
         self.balance = QLabel(text.format(read=read, used=used, listed=listed))
         self.table = QTableView()
+        self.table.setAccessibleName(self.windowTitle())
+        self.table.setTabKeyNavigation(False)
         rows = QSortFilterProxyModel(self)
         rows.setSourceModel(_Issues(site.issues, self))
         rows.setSortRole(_NUMBER)
@@ -55,13 +57,16 @@ class IssuesDialog(QDialog):
         self.table.verticalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         export = QPushButton(self.tr("&Export CSV…"))
         export.clicked.connect(self._export)
-        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        buttons = QDialogButtonBox()
         buttons.addButton(export, QDialogButtonBox.ButtonRole.ActionRole)
+        close = buttons.addButton(QDialogButtonBox.StandardButton.Close)
         buttons.rejected.connect(self.reject)
         layout = QVBoxLayout(self)
         layout.addWidget(self.balance)
         layout.addWidget(self.table)
         layout.addWidget(buttons)
+        # Now that it is in the dialog; else Enter would press the first button.
+        close.setDefault(True)
         self.resize(900, 480)
 
     def _export(self) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -16,16 +16,26 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-__all__ = ["RawVolumeDialog"]
+__all__ = ["RawVolumeDialog", "type_names"]
 
 #: More voxels along an axis than any scan has.
 MOST = 1_000_000
 
 
+def type_names(tr: Callable[[str], str]) -> dict[str, str]:
+    """Return what the types of a value are called, by their codes without byte order; ``tr`` is a window's."""
+    return {
+        "u1": tr("8 bits, unsigned"), "i1": tr("8 bits, signed"),
+        "u2": tr("16 bits, unsigned"), "i2": tr("16 bits, signed"),
+        "u4": tr("32 bits, unsigned"), "i4": tr("32 bits, signed"),
+        "f4": tr("32 bits, floating point"), "f8": tr("64 bits, floating point"),
+    }  # fmt: skip
+
+
 class RawVolumeDialog(QDialog):
     """Three counts and the type of a value; ``stated`` returns them as the reader takes them.
 
-    ``fault`` is what the reader said; ``shape`` and ``dtype`` are what was stated before.
+    ``fault`` is what the reader said; ``shape`` and ``dtype`` are what was stated or assumed before.
     """
 
     def __init__(self, fault: str, shape: Sequence[int] | None, dtype: str | None, parent: QWidget) -> None:
@@ -35,12 +45,7 @@ class RawVolumeDialog(QDialog):
         self.message.setWordWrap(True)
         self.counts = tuple(QSpinBox() for _ in range(3))
         self.kind, self.big_endian = QComboBox(), QCheckBox(self.tr("&Big-endian byte order"))
-        for name, text in (
-            ("u1", self.tr("8 bits, unsigned")), ("i1", self.tr("8 bits, signed")),
-            ("u2", self.tr("16 bits, unsigned")), ("i2", self.tr("16 bits, signed")),
-            ("u4", self.tr("32 bits, unsigned")), ("i4", self.tr("32 bits, signed")),
-            ("f4", self.tr("32 bits, floating point")), ("f8", self.tr("64 bits, floating point")),
-        ):  # fmt: skip
+        for name, text in type_names(self.tr).items():
             self.kind.addItem(text, name)
         self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel)
         form = QFormLayout()
@@ -59,7 +64,7 @@ class RawVolumeDialog(QDialog):
         for box, count in zip(self.counts, shape or (), strict=False):
             box.setValue(count)
         if dtype is not None:
-            self.kind.setCurrentIndex(self.kind.findData(dtype.lstrip("<>")))
+            self.kind.setCurrentIndex(self.kind.findData(dtype.lstrip("<>|")))
             self.big_endian.setChecked(dtype.startswith(">"))
         self.kind.currentIndexChanged.connect(self._refresh)
         self.buttons.accepted.connect(self.accept)

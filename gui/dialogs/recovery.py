@@ -37,6 +37,7 @@ class RecoveryDialog(QDialog):
         text = QLabel(self.tr("geofit did not close properly. This work was not saved:"))
         text.setWordWrap(True)
         self.list = QListWidget()
+        text.setBuddy(self.list)
         self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         for session in sessions:
             item = QListWidgetItem(self._describe(session))

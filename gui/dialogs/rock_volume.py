@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from PySide6.QtCore import QSignalBlocker, Qt
+from PySide6.QtCore import QSignalBlocker, QSize, Qt
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
@@ -24,7 +25,7 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.data.errors import InputError
-from geofit.gui.dialogs.raw_volume import RawVolumeDialog
+from geofit.gui.dialogs.raw_volume import RawVolumeDialog, type_names
 from geofit.gui.dialogs.scene_dialog import SceneDialog
 from geofit.gui.panels.fit_panel import Banner
 from geofit.gui.panels.tables import DataTable, TableColumn
@@ -91,12 +92,18 @@ class RockVolumeDialog(SceneDialog):
         self.view: PoreView | None = None
         self.raw: RawVolumeDialog | None = None
         self._reading: tuple[Path, Sequence[int] | None, str | None] | None = None
+        #: The raw file that is open.
+        self._raw_file: Path | None = None
         self._made: tuple[float, ...] = ()
         self._verdict = ("", "none")
         self.old = Banner()
         self.slices, self.scene, self.table = VolumeSlices(), PoreScene(), DataTable()
         self.table.setAccessibleName(self.tr("Figures of the pore space"))
         self.open_button = QPushButton(self.tr("&Open a volume…"))
+        self.shape_button, self.assumed = QPushButton(self.tr("S&hape and type…")), QLabel()
+        self.assumed.setWordWrap(True)
+        for widget in (self.shape_button, self.assumed):
+            widget.hide()
         self.low, self.high, self.edge = PoreValue(), PoreValue(), QDoubleSpinBox()
         self.edge.setRange(0.0, 1e9)
         self.edge.setDecimals(3)
@@ -112,9 +119,10 @@ class RockVolumeDialog(SceneDialog):
         self.key = QLabel()
         self.key.setTextFormat(Qt.TextFormat.RichText)
         self.go.setText(self.tr("&Find pores"))
-        self.fields = (self.open_button, self.low, self.high, self.edge)
+        self.fields = (self.open_button, self.shape_button, self.low, self.high, self.edge)
         self._lay_out()
         self.open_button.clicked.connect(self._ask)
+        self.shape_button.clicked.connect(self._change_shape)
         self.go.clicked.connect(self._find)
         for box in (self.low, self.high, self.edge):
             box.valueChanged.connect(self._changed)
@@ -147,12 +155,9 @@ class RockVolumeDialog(SceneDialog):
         fault = translated(error.fault)
         self.say(fault, "failed")
         path, shape, dtype = self._reading
-        raw = Path(path.name.lower().removesuffix(".gz")).suffix in RAW
-        differs = error.code == "io.raw-size-differs" and (raw or shape is not None)
+        differs = error.code == "io.raw-size-differs" and (_is_raw(path) or shape is not None)
         if differs or error.code == "io.raw-without-shape":
-            self.raw = RawVolumeDialog(fault, shape, dtype, self)
-            self.raw.finished.connect(self._shape_stated)
-            self.raw.open()
+            self._ask_shape(fault, path, shape, dtype)
 
     def refresh(self) -> None:
         """Enable what can be done: pores can be found once a volume is open and its voxel is stated."""
@@ -171,12 +176,19 @@ class RockVolumeDialog(SceneDialog):
         edges = QHBoxLayout()
         edges.addWidget(self.edge, 1)
         edges.addWidget(self.edges)
-        form.addRow(self.tr("Edge of a voxel"), edges)
+        edge = QLabel(self.tr("Edge of a voxel"))
+        edge.setBuddy(self.edge)
+        form.addRow(edge, edges)
         form.addRow(self.tr("Porosity"), self.porosity)
         left = QWidget()
         column = QVBoxLayout(left)
         column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.open_button, 0, Qt.AlignmentFlag.AlignLeft)
+        row = QHBoxLayout()
+        for button in (self.open_button, self.shape_button):
+            row.addWidget(button)
+        row.addStretch(1)
+        column.addLayout(row)
+        column.addWidget(self.assumed)
         column.addWidget(self.slices, 1)
         column.addLayout(form)
         colours = QHBoxLayout()
@@ -200,7 +212,7 @@ class RockVolumeDialog(SceneDialog):
         layout.addWidget(parts, 1)
         layout.addLayout(self.message_row)
         layout.addLayout(self.foot())
-        self.resize(1180, 760)
+        self.resize(QSize(1180, 760).boundedTo(self.screen().availableSize()))
 
     def _ask(self) -> None:
         kinds = "*.tif *.tiff *.raw *.bin *.dat *.npy *.npz *.mhd *.mha *.gz *.zip"
@@ -210,16 +222,39 @@ class RockVolumeDialog(SceneDialog):
         if path:
             self.read(Path(path))
 
-    def _shape_stated(self, result: int) -> None:
+    def _ask_shape(self, words: str, path: Path, shape: Sequence[int] | None, dtype: str | None) -> None:
+        self.raw = RawVolumeDialog(words, shape, dtype, self)
+        self.raw.finished.connect(lambda result: self._shape_stated(path, result))
+        self.raw.open()
+
+    def _change_shape(self) -> None:
+        """Ask for the shape of the raw file that is open; what it was read with is proposed."""
+        assert self.volume is not None
+        assert self._raw_file is not None
+        values = self.volume.values
+        words = self.tr("{name}: state its shape and type.").format(name=self._raw_file.name)
+        self._ask_shape(words, self._raw_file, values.shape, values.dtype.str)
+
+    def _shape_stated(self, path: Path, result: int) -> None:
         form, self.raw = self.raw, None
         assert form is not None
-        assert self._reading is not None
         form.deleteLater()
         if result == QDialog.DialogCode.Accepted:
-            self.read(self._reading[0], *form.stated)
+            self.read(path, *form.stated)
 
     def _opened(self, volume: GreyVolume) -> None:
+        assert self._reading is not None
+        path, shape, _ = self._reading
         self.volume, self.view, self._reading = volume, None, None
+        self._raw_file = path if _is_raw(path) else None
+        self.shape_button.setVisible(self._raw_file is not None)
+        self.assumed.setVisible(self._raw_file is not None and shape is None)
+        self.assumed.setText(
+            self.tr("A raw file has no header: read as {shape} voxels, {type}. Check shape and type.").format(
+                shape=" × ".join(map(str, volume.values.shape)),
+                type=type_names(self.tr).get(volume.values.dtype.str.lstrip("<>|"), str(volume.values.dtype)),
+            )
+        )
         self.scene.clear()
         self._show_figures([])
         self.key.clear()
@@ -355,3 +390,12 @@ class RockVolumeDialog(SceneDialog):
             marks = [f'<span style="color:{c}">■</span> {word}' for c, word in zip(CONNECTED, words, strict=True)]
             text = self.tr("percolates along") + " " + " ".join(marks)
         self.key.setText(text)
+
+
+def _is_raw(path: Path) -> bool:
+    """Return whether a file, packed or not, has voxels and no header."""
+    names = [path.name]
+    if path.suffix.lower() == ".zip":
+        with zipfile.ZipFile(path) as archive:
+            names = archive.namelist()
+    return any(Path(name.lower().removesuffix(".gz")).suffix in RAW for name in names)

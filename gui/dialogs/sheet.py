@@ -16,6 +16,7 @@ from PySide6.QtWidgets import (
     QDoubleSpinBox,
     QFormLayout,
     QHBoxLayout,
+    QLabel,
     QLineEdit,
     QPushButton,
     QVBoxLayout,
@@ -124,12 +125,14 @@ class SheetDialog(TaskDialog):
             (self.tr("T&itle"), self.title_line),
             (self.tr("P&roject"), self.project),
             (self.tr("Drawing &number"), self.number),
-            (self.tr("Prepared &by"), self.author),
+            (self.tr("Prepared b&y"), self.author),
             (self.tr("&Date"), self.date),
         ):
             form.addRow(words, field)
         form.addRow(self.tr("Files", "SectionSheetDialog"), forms)
-        form.addRow(self.tr("To"), place)
+        to = QLabel(self.tr("To"))
+        to.setBuddy(self.target)
+        form.addRow(to, place)
         self.target.setMinimumWidth(360)
         self.fields = (
             *(field for _, field in (*first, *after_scale)), self.paper, self.scale, self.title_line, self.project,

@@ -119,7 +119,9 @@ class SignedFields:
         signed.addWidget(self.organisation, 1)
         author = QLabel(self._dialog.tr("&Author"))
         author.setBuddy(self.author)
-        form.addRow(self._dialog.tr("O&rigin"), self.origin)
+        origin = QLabel(self._dialog.tr("O&rigin"))
+        origin.setBuddy(self.origin.choice)
+        form.addRow(origin, self.origin)
         form.addRow(author, signed)
         form.addRow("", self.certificate)
 
@@ -155,8 +157,9 @@ class BodyStepDialog(QDialog):
         warned.addWidget(self.warning, 1)
         for widget in (mark, self.warning):
             widget.setVisible(stale)
-        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel)
+        buttons = QDialogButtonBox()
         self.go = buttons.addButton(self.tr("&Write"), QDialogButtonBox.ButtonRole.AcceptRole)
+        buttons.addButton(QDialogButtonBox.StandardButton.Cancel)
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
         layout = QVBoxLayout(self)

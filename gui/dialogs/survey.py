@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QFileDialog,
@@ -186,7 +186,7 @@ class SurveyDialog(SceneDialog):
         layout.addWidget(parts, 1)
         layout.addLayout(self.message_row)
         layout.addLayout(self.foot(self.export, self.report, self.add))
-        self.resize(1180, 760)
+        self.resize(QSize(1180, 760).boundedTo(self.screen().availableSize()))
 
     def _connect(self) -> None:
         self.open_button.clicked.connect(self._ask)

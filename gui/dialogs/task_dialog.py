@@ -37,6 +37,7 @@ class TaskDialog(QDialog):
         self._task: Task | None = None
         self._turn = 0
         self._focused: QWidget | None = None
+        self._foot: tuple[QWidget, ...] = ()
         self.fields: tuple[QWidget, ...] = ()
         self.message, self.sign = QLabel(), QLabel()
         self.message.setWordWrap(True)
@@ -69,7 +70,15 @@ class TaskDialog(QDialog):
         row.addStretch(1)
         for button in (*buttons, self.stop, self.go, self._leave):
             row.addWidget(button)
+        self._foot = (*buttons, self.stop, self.go, *self._leave.buttons())
         return row
+
+    def put_foot_last(self) -> None:
+        """Let Tab come to the lowest row last again, after fields that were made later."""
+        before: QWidget = self.previousInFocusChain() or self
+        for button in self._foot:
+            QWidget.setTabOrder(before, button)
+            before = button
 
     def say(self, text: str, mark: str = "none") -> None:
         """Say something next to a mark of :func:`geofit.gui.panels.marks.icon`; no text, no mark."""

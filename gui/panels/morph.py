@@ -155,6 +155,19 @@ class MorphPanel(QWidget):
             )
         self._check()
 
+    def take_over(self, other: MorphPanel) -> None:
+        """Take the order of the bodies, and what is chosen and entered, from another panel."""
+        with QSignalBlocker(self.list):
+            self.list.clear()
+            for k in range(other.list.count()):
+                self.list.addItem(other.list.item(k).clone())
+        for mine, theirs in ((self.mode, other.mode), (self.pace, other.pace)):
+            mine.setCurrentIndex(theirs.currentIndex())
+        self.dates.setText(other.dates.text())
+        for box, former in ((self.seeds, other.seeds), (self.skin, other.skin)):
+            with QSignalBlocker(box):
+                box.setChecked(former.isChecked())
+
     def chosen(self) -> tuple[str, ...]:
         """Return the bodies that are checked, in their order."""
         items = [self.list.item(k) for k in range(self.list.count())]

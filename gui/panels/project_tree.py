@@ -108,6 +108,8 @@ class ProjectTree(QWidget):
         column.setContentsMargins(8, 8, 8, 8)
         column.setSpacing(6)
         column.addWidget(self.search)
+        # It is above the view, which was made first.
+        self.setTabOrder(self.search, self.view)
         column.addWidget(self.view, 1)
         column.addWidget(self.form)
         self._later = QTimer(self, singleShot=True, interval=0)

@@ -31,7 +31,8 @@ class SectionExtent:
 
     def rise(self, upwards: float) -> float:
         """Return the height of the whole, at so many pixels a metre of elevation."""
-        return max((self.high - self.low) * upwards, (self.head - self.low) * upwards + self.names, 1e-3)
+        named = (self.head - self.low) * upwards + self.names if self.names else 0.0
+        return max((self.high - self.low) * upwards, named, 1e-3)
 
     def scale(self, size: tuple[float, float], factor: float) -> float:
         """Return the most pixels a metre along the section with which all of it is seen."""
@@ -47,7 +48,7 @@ def automatic(seen: SectionExtent, size: tuple[float, float]) -> float:
 
     Examples
     --------
-    >>> flat, steep = Extent(2000.0, 1300.0, 1400.0), Extent(500.0, 1000.0, 1500.0)
+    >>> flat, steep = SectionExtent(2000.0, 1300.0, 1400.0), SectionExtent(500.0, 1000.0, 1500.0)
     >>> automatic(flat, (800.0, 160.0)), automatic(steep, (800.0, 160.0))
     (5.0, 1.0)
     """

@@ -300,6 +300,7 @@ class ImportWizard(TaskDialog):
             self.horizons.changed.connect(self._hint)
             self.horizons.changed.connect(self.refresh)
             self.pages.addWidget(self.horizons)
+            self.put_foot_last()
         self.pages.setCurrentWidget(self.horizons)
         self._hint()
         self.refresh()

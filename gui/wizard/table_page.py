@@ -72,7 +72,7 @@ class TablePage(QWidget):
             box.activated.connect(self._read_again)
         self.kind.setMinimumContentsLength(24)
         left, right = QFormLayout(), QFormLayout()
-        left.addRow(self.tr("&Rows are"), self.kind)
+        left.addRow(self.tr("R&ows are"), self.kind)
         left.addRow(self.tr("&Encoding"), self.encoding)
         right.addRow(self.tr("&Separator"), self.separator)
         right.addRow(self.tr("&Decimal mark"), self.decimal)
@@ -88,6 +88,8 @@ class TablePage(QWidget):
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.table.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.table.setTabKeyNavigation(False)
+        self.table.setAccessibleName(self.tr("First rows of the table"))
         self.table.verticalHeader().setDefaultSectionSize(self.fontMetrics().height() + 6)
         self.table.verticalHeader().hide()
         self.table.setHorizontalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
@@ -163,6 +165,7 @@ class TablePage(QWidget):
             return
         self.table.setRowCount(len(preview.rows) + 1)
         self.table.setRowHeight(0, self.kind.sizeHint().height() + 2)
+        before: QWidget = self.table
         for column, title in enumerate(titles):
             box = QComboBox()
             box.setAccessibleName(self.tr("Role of column {name}").format(name=title))
@@ -172,6 +175,9 @@ class TablePage(QWidget):
             box.setEnabled(draft.named_kind)
             box.activated.connect(partial(self._name, column))
             self.table.setCellWidget(0, column, box)
+            # After the table; what is made last would come after the buttons.
+            QWidget.setTabOrder(before, box)
+            before = box
         for row, cells in enumerate(preview.rows, 1):
             for column, cell in enumerate(cells):
                 self.table.setItem(row, column, QTableWidgetItem(cell))

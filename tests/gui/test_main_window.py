@@ -24,6 +24,7 @@ from geofit.data.messages import message
 from geofit.data.site import ImportIssue, Site, TableCount
 from geofit.gui.dialogs.error import ErrorDialog
 from geofit.gui.dialogs.issues import IssuesDialog
+from geofit.gui.dialogs.preferences import PreferencesDialog
 from geofit.gui.dialogs.recovery import RecoveryDialog
 from geofit.gui.dialogs.shortcuts import ShortcutsDialog
 from geofit.gui.dialogs.system_report import SystemReport, system_report
@@ -153,6 +154,23 @@ def test_another_language_keeps_the_work(app, small):
     assert Preferences().language == "zh_CN"
     app.desktop.change_language("en")
     app.idle()
+
+
+def test_a_language_or_unit_that_is_refused_is_not_shown_as_chosen(app):
+    """An open survey would go with the window, so neither changes, and menu and preferences show what applies."""
+    app.window.surveys.open()
+    old, words = app.window, []
+    app.window.statusBar().messageChanged.connect(words.append)
+    next(action for action in app.window.actions_.languages.actions() if action.data() == "zh_CN").trigger()
+    app.window.lengths_chosen.emit("ft")
+    app.qtbot.waitUntil(lambda: words.count("Close the survey first: its window and its body would be lost.") >= 1)
+    app.idle()
+    assert app.window is old
+    assert app.window.actions_.languages.checkedAction().data() == "en"
+    dialog = PreferencesDialog(app.window.preferences)
+    app.qtbot.addWidget(dialog)
+    assert (dialog.language, dialog.lengths) == ("en", "m")
+    app.window.surveys.close()
 
 
 def choose_theme(window, theme):

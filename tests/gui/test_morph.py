@@ -213,6 +213,39 @@ def test_dates_and_order_are_those_of_the_list(bodies):
     bodies.qtbot.waitUntil(panel.run.isVisible)
 
 
+def test_another_language_keeps_the_way(bodies):
+    panel, morphing = bodies.panel, bodies.morphing
+    panel.list.insertItem(0, panel.list.takeItem(1))
+    panel.mode.setCurrentIndex(panel.mode.findData("blend"))
+    panel.dates.setText("2024-01-01, 2025-01-01")
+    join(bodies, "ball", "ring")
+    panel.skin.setChecked(False)
+    panel.timeline.put(0.5)
+    panel.moved.emit(0.5)
+    panel.rested.emit(0.5)
+    rested(bodies)
+    view, shown = morphing.view, panel.where.text()
+    # A key or a click moves and rests in one event: the full grid wins over the preview.
+    assert f"{view.full(0.5).overview.volume:,.0f}".replace(",", "\N{NO-BREAK SPACE}") in shown
+    bodies.desktop.change_language("zh_CN")
+    bodies.idle()
+    bodies.desktop.change_language("en")
+    bodies.idle()
+    panel, morphing = bodies.window.panels.morph, bodies.window.morphing
+    bodies.qtbot.waitUntil(lambda: morphing.idle, timeout=60_000)
+    assert morphing.view is view
+    assert panel.chosen() == ("ring", "ball")
+    assert (panel.mode.currentData(), panel.dates.text()) == ("blend", "2024-01-01, 2025-01-01")
+    assert (panel.timeline.tau, panel.timeline.events) == (0.5, tuple(event.tau for event in view.events))
+    assert panel.where.text() == shown
+    assert panel.take.isEnabled()
+    layers = bodies.window.panels.view.layers
+    assert "morph" in layers
+    assert not [layer for layer in layers if layer.kind == "morph end"]
+    panel.skin.setChecked(True)
+    assert [layer.horizon for layer in layers if layer.kind == "morph end"] == ["ring", "ball"]
+
+
 def test_horizons_are_closed_to_bodies_and_joined(app, sample, tmp_path):
     from geofit.gui.dialogs.horizon_bodies import HorizonBodies
     from geofit.project.body_record import BetweenHorizons
@@ -264,12 +297,18 @@ def test_a_film_shows_the_way_as_the_view_does(bodies, tmp_path, monkeypatch):
     join(bodies, "ball", "ring")
     morphing, panel, view = bodies.morphing, bodies.panel, bodies.window.panels.view
     panel.timeline.put(0.3)
-    written = []
+    panel.rested.emit(0.3)
+    rested(bodies)
+    shown_before, written = panel.where.text(), []
     morphing.filming.written.connect(written.append)
     morphing.film(tmp_path / "way.gif", pictures=5)
+    assert bodies.window.busy, "another language would cut the film off"
     bodies.qtbot.waitUntil(lambda: bool(written), timeout=60_000)
     bodies.idle()
     assert panel.timeline.tau == 0.3
+    # The frame of the full grid is back, not its preview.
+    rested(bodies)
+    assert panel.where.text() == shown_before
     with Image.open(tmp_path / "way.gif") as film:
         assert film.n_frames == 5
         shown = view.picture()

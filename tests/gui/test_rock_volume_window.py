@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import gzip
 import weakref
+import zipfile
 
 import numpy as np
 import pytest
@@ -189,6 +190,38 @@ def test_a_raw_file_is_left_alone_where_its_shape_is_not_stated(qtbot, rock_volu
     assert "odd.raw" in rock_volume.message.text()
     assert "dtype" not in rock_volume.message.text()
     assert rock_volume.volume is None
+
+
+@pytest.mark.parametrize("file", ["core.raw", "core.raw.gz", "core_6.raw", "core.zip"])
+def test_the_shape_that_a_raw_file_was_read_with_is_shown_and_can_be_changed(qtbot, rock_volume, tmp_path, file):
+    """As many voxels fit a cube and 4 x 6 x 9: a size says nothing about the shape."""
+    values = np.arange(216, dtype=np.uint8).reshape(4, 6, 9)
+    path = tmp_path / file
+    if file.endswith("zip"):
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("core.raw", values.tobytes())
+    else:
+        path.write_bytes(gzip.compress(values.tobytes()) if file.endswith("gz") else values.tobytes())
+    assert not rock_volume.shape_button.isVisible()
+    read(qtbot, rock_volume, path)
+    assert rock_volume.volume.values.shape == (6, 6, 6)
+    assert rock_volume.assumed.isVisible()
+    assert "read as 6 × 6 × 6 voxels, 8 bits, unsigned." in rock_volume.assumed.text()
+    qtbot.mouseClick(rock_volume.shape_button, Qt.MouseButton.LeftButton)
+    form = rock_volume.raw
+    assert form.isVisible()
+    assert form.stated == ((6, 6, 6), "u1")
+    for box, count in zip(form.counts, values.shape, strict=True):
+        box.setValue(count)
+    before = rock_volume.volume
+    form.accept()
+    qtbot.waitUntil(lambda: not rock_volume.running and rock_volume.volume is not before, timeout=30_000)
+    np.testing.assert_array_equal(rock_volume.volume.values, values)
+    # What a person stated is not called assumed, and can still be changed.
+    assert not rock_volume.assumed.isVisible()
+    assert rock_volume.shape_button.isVisible()
+    read(qtbot, rock_volume, labels(tmp_path / "rock.npy"))
+    assert not rock_volume.shape_button.isVisible()
 
 
 @pytest.mark.parametrize(("file", "content"), [("a.raw", b""), ("a.mha", None)])

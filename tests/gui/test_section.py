@@ -228,6 +228,17 @@ def test_a_window_holds_the_section_and_its_names(factor):
     assert (top - 1410) * upwards >= 50
 
 
+@pytest.mark.parametrize("low", [-8900.0, -3.0, 0.0, 1300.0])
+def test_a_section_without_names_is_in_the_middle_at_any_elevation(low):
+    """Below sea level, too: no name is at elevation 0 then."""
+    seen, size = SectionExtent(3500.0, low, low + 120.0), (700.0, 200.0)
+    for factor in (1.0, automatic(seen, size)):
+        _, (bottom, top) = window(seen, size, factor)
+        assert (bottom + top) / 2 == pytest.approx(low + 60.0)
+        assert bottom < low
+        assert top > low + 120.0
+
+
 def test_a_section_without_any_height_is_still_drawn():
     flat = SectionExtent(100.0, 5.0, 5.0)
     assert np.isfinite(window(flat, (300.0, 200.0), automatic(flat, (300.0, 200.0)))).all()

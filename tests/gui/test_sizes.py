@@ -5,9 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from panel_samples import SITE, sample_site
+from PySide6.QtCore import QSize
 from PySide6.QtWidgets import QApplication, QComboBox, QDialog
 
 from geofit.gui.dialogs.preferences import PreferencesDialog
+from geofit.gui.dialogs.rock_volume import RockVolumeDialog
+from geofit.gui.dialogs.scene_dialog import SceneDialog
+from geofit.gui.dialogs.survey import SurveyDialog
+from geofit.gui.main_window import MainWindow
 from geofit.gui.preferences import Preferences
 
 
@@ -27,6 +32,34 @@ def accepted(monkeypatch):
         monkeypatch.setattr(PreferencesDialog, "exec", choose)
 
     return answer
+
+
+#: A screen of 1366 x 768 at 125 %, with a task bar.
+SMALL = QSize(1092, 580)
+
+
+@pytest.fixture
+def small_screen(monkeypatch):
+    class Screen:
+        def availableSize(self):  # noqa: N802
+            return SMALL
+
+    for kind in (SceneDialog, MainWindow):
+        monkeypatch.setattr(kind, "screen", lambda _: Screen(), raising=False)
+
+
+@pytest.mark.parametrize(
+    "make", [RockVolumeDialog, lambda: SurveyDialog(dict, lambda: False)], ids=["rock volume", "survey"]
+)
+def test_a_large_dialog_fits_a_small_screen(qtbot, small_screen, make):
+    dialog = make()
+    qtbot.addWidget(dialog)
+    assert dialog.size().boundedTo(SMALL) == dialog.size()
+    dialog.close()
+
+
+def test_the_window_fits_a_small_screen(small_screen, app):
+    assert app.window.size().boundedTo(SMALL) == app.window.size()
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ import ezdxf
 import numpy as np
 import pypdfium2
 import pytest
+from matplotlib.figure import Figure
 
 import geofit
 from geofit.data.errors import SettingsError
@@ -17,7 +18,7 @@ from geofit.data.stale import StaleCause, stale_warning
 from geofit.io.site_file import read_site
 from geofit.project.plan_sheet import PlanOrder, write_plan_sheet
 from geofit.report import plan_pages
-from geofit.report.contour_plan import map_corners
+from geofit.report.contour_plan import draw_map, map_corners
 from geofit.report.paper import PAPERS, SheetTitle
 from geofit.report.plan_pages import plan_scale, write_plan_pdf, write_plan_svg
 from geofit.report.result import HorizonResult
@@ -46,6 +47,23 @@ def test_the_page_has_its_size_its_scale_and_the_names_of_the_holes(tmp_path, la
     assert NAME in words
     assert "D-18" in words
     assert sum(hole.name in words for hole in result().site.holes) > 20
+
+
+@pytest.mark.parametrize("interval", [2.0, 5.0, 10.0])
+def test_no_name_of_a_hole_covers_an_elevation_or_another_name(interval):
+    axes = Figure(figsize=(5.5, 5.5), dpi=200).add_axes((0.1, 0.1, 0.85, 0.85))
+    low, high = map_corners(result())
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
+    draw_map(axes, result(), interval, 119.0)
+    holes = {hole.name for hole in result().site.holes}
+    boxes = [(text.get_text(), text.get_window_extent()) for text in axes.texts]
+    assert sum(name in holes for name, _ in boxes) > 20
+    assert any(name.isdigit() for name, _ in boxes)
+    named = [(name, box) for name, box in boxes if name in holes]
+    assert not [
+        (name, text) for name, box in named for text, other in boxes if other is not box and box.overlaps(other)
+    ]
 
 
 def test_a_metre_is_a_thousand_millimetres_over_the_scale(monkeypatch, tmp_path):
