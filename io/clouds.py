@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -152,23 +153,35 @@ def _form(path: Path) -> str:
 
 def _opened_las(path: Path) -> Any:
     laspy = need("laspy", "scale", message("io.reading-cloud", "Reading the cloud {file}", file=path.name))
+    _require_records(path)
     try:
         return laspy.open(path)
-    except Exception as error:  # laspy raises errors of its own, of struct and of lazrs
-        raise _damaged(path, error) from None
+    except Exception:  # laspy raises errors of its own, of struct and of lazrs
+        raise _damaged(path) from None
+
+
+def _require_records(path: Path) -> None:
+    """Refuse a header that counts more records than the file has room for: laspy makes them all, without end."""
+    size = path.stat().st_size
+    with path.open("rb") as stream:
+        head = stream.read(247).ljust(247, b"\0")
+    length, points, records = struct.unpack_from("<HII", head, 94)
+    start, extended = struct.unpack_from("<QI", head, 235) if head[25] >= 4 else (0, 0)
+    if length + 54 * records > points or points > size or (extended and start + 60 * extended > size):
+        raise _damaged(path)
 
 
 def _opened_parquet(path: Path) -> Any:
     parquet = need("pyarrow.parquet", "scale", message("io.reading-cloud", "Reading the cloud {file}", file=path.name))
     try:
         return parquet.ParquetFile(path)
-    except (OSError, ValueError) as error:
-        raise _damaged(path, error) from None
+    except (OSError, ValueError):
+        raise _damaged(path) from None
 
 
-def _damaged(path: Path, error: Exception) -> InputError:
+def _damaged(path: Path) -> InputError:
     return InputError(
-        message("io.cloud-damaged", "The cloud cannot be read: {error}", error=str(error) or type(error).__name__),
+        message("io.cloud-damaged", "The cloud is damaged, incomplete or of another format"),
         message("io.export-again", "Export it again."),
         file=path.name,
     )
@@ -182,8 +195,8 @@ def _las(path: Path) -> Iterator[Floats]:
                 points = next(chunks)
             except StopIteration:
                 return
-            except Exception as error:
-                raise _damaged(path, error) from None
+            except Exception:
+                raise _damaged(path) from None
             yield np.column_stack([np.asarray(points[name], np.float64) for name in ("x", "y", "z")])
 
 
@@ -242,8 +255,8 @@ def _parquet(cloud: Cloud) -> Iterator[Floats]:
             finite = np.isfinite(xyz).all(axis=1)
             cloud.read, cloud.used = cloud.read + len(xyz), cloud.used + int(finite.sum())
             yield xyz if finite.all() else xyz[finite]
-    except (OSError, ValueError, TypeError) as error:
-        raise _damaged(cloud.path, error) from None
+    except (OSError, ValueError, TypeError):
+        raise _damaged(cloud.path) from None
 
 
 @dataclass(frozen=True, kw_only=True)

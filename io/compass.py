@@ -8,7 +8,8 @@ first or the second station of a shot. (Fountain Computer Products, "Survey data
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ from geofit.caves.shots import ShotList, polar, require_length
 from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
 from geofit.data.given import arguments_checked
-from geofit.data.messages import Untranslated, message
+from geofit.data.messages import Untranslated, message, plural_message
 from geofit.io.journal import Journal
 from geofit.io.source import Source, as_source
 from geofit.io.units import METRES
@@ -29,18 +30,21 @@ FEET = METRES["ft"]
 _MISSING = 990.0
 #: A backsight may differ from its foresight by this much before it is listed, degrees.
 _BACKSIGHT = 5.0
-_NUMBER = r"[-+]?\d*\.?\d+"
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)")
 
 
 @dataclass(frozen=True)
 class _Header:
-    """What the head of one survey says about its shots."""
+    """What the head of one survey says about its shots; ``unread``: its corrections that cannot be read."""
 
     declination: float = 0.0
     corrections: tuple[float, ...] = (0.0, 0.0, 0.0)
     backsight_corrections: tuple[float, ...] = (0.0, 0.0)
     backsights: bool = False
     walls_at_end: bool = False
+    row: int = 0
+    line: str = ""
+    unread: tuple[str, ...] = ()
 
 
 @arguments_checked
@@ -76,19 +80,24 @@ def read_compass(source: Source | str | Path, journal: Journal | None = None) ->
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\x1a")[0].split("\n")
     shots = ShotList()
     header, in_shots, read, used, surveys, untouched = _Header(), False, 0, 0, 0, 0
+    uncorrected: dict[_Header, int] = {}
     for row, line in enumerate(lines, 1):
         if "\f" in line:
-            in_shots, line = False, line.split("\f")[-1]
+            in_shots, header, line = False, _Header(), line.split("\f")[-1]
         if not line.strip():
             continue
-        if line.startswith("DECLINATION:"):
-            header = _header(line)
+        if line.lstrip().startswith("DECLINATION:"):
+            header = _header(line.strip(), row)
         elif re.match(r"\s*FROM\s+TO\s+LEN", line):
             in_shots, surveys = True, surveys + 1
+            if not header.row:
+                header = replace(header, row=row, line=line.strip(), unread=("DECLINATION",))
         elif in_shots:
             read += 1
             found = _shot(line, row, header, shots, source.name, journal)
             used += found > 0
+            if found and header.unread:
+                uncorrected[header] = uncorrected.get(header, 0) + 1
             untouched += found == 2
     if not surveys:
         raise InputError(
@@ -110,16 +119,39 @@ def read_compass(source: Source | str | Path, journal: Journal | None = None) ->
             ),
             message("io.walls-interpolated", "They are interpolated along the passage."),
         )
+    for header, count in uncorrected.items():
+        reason = plural_message(
+            "io.shots-uncorrected",
+            "{count} shot is used without the correction by {word}: its {what} are as measured",
+            "{count} shots are used without the correction by {word}: their {what} are as measured",
+            count=count,
+            word=Untranslated(", ".join(header.unread)),
+            what=message("io.directions", "directions")
+            if header.unread == ("DECLINATION",)
+            else message("io.lengths-and-directions", "lengths and directions"),
+        ).with_severity("warning")
+        remedy = message(
+            "io.correct-compass-header", "Correct the line DECLINATION of the survey, with decimal points."
+        )
+        journal.add("warning", source.name, reason, remedy, row=header.row, value=header.line[:120])
     journal.count(source.name, read, read - used)
     with journal.handed_over():
         return shots.survey(source.name, journal.issues[first_issue:], journal.counts[first_count:])
 
 
-def _header(line: str) -> _Header:
+def _header(line: str, row: int) -> _Header:
+    unread: list[str] = []
+
     def numbers(word: str, count: int) -> tuple[float, ...]:
-        found = re.search(word + r":\s*((?:" + _NUMBER + r"\s*)+)", line)
-        values = [float(v) for v in found.group(1).split()] if found else []
-        return tuple((values + [0.0] * count)[:count])
+        _, stated, rest = line.partition(f"{word}:")
+        cells = rest.split()
+        values = [float(cell) for cell in takewhile(_NUMBER.fullmatch, cells)][:count]
+        after = "".join(cells[len(values) : len(values) + 1])
+        # A number with a decimal comma is none: what is before the comma would be taken for all of it.
+        if stated and (not values or (len(values) < count and re.match(r"[-+.\d]", after))):
+            unread.append(word)
+            values = []
+        return tuple(values + [0.0] * (count - len(values)))
 
     form = re.search(r"FORMAT:\s*(\w+)", line)
     letters = form.group(1) if form else ""
@@ -131,6 +163,9 @@ def _header(line: str) -> _Header:
         numbers("CORRECTIONS2", 2),
         tail[:1] == "B",
         tail[1:2] == "T",
+        row,
+        line,
+        tuple(unread),
     )
 
 

@@ -220,13 +220,12 @@ def _is_geographic(crs: str) -> bool:
 def _system(pyproj: Any, text: str, file: str) -> Any:
     try:
         return pyproj.CRS.from_user_input(text)
-    except pyproj.exceptions.CRSError as error:
+    except pyproj.exceptions.CRSError:
         raise InputError(
             message(
                 "io.crs-unknown",
-                "The coordinate system '{text}' is unknown: {error}",
+                "The coordinate system '{text}' is unknown",
                 text=text,
-                error=error,
             ),
             message("io.give-epsg-code", "Give a code such as EPSG:32650."),
             file=file,

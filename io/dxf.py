@@ -198,13 +198,9 @@ def _readable(source: Source) -> Iterator[None]:
     )
     try:
         yield
-    except failures as error:
+    except failures:
         raise InputError(
-            message(
-                "io.drawing-unreadable",
-                "The drawing cannot be read: {error}",
-                error=_clean(str(error)) or type(error).__name__,
-            ),
+            message("io.drawing-unreadable", "The drawing is damaged, incomplete or not a DXF file"),
             message("io.audit-in-cad", "Open it in CAD, audit it and save it as DXF (2007 or later)."),
             file=source.name,
         ) from None

@@ -52,9 +52,7 @@ def table_names(source: Source) -> tuple[str, ...]:
         case "ags":
             from geofit.io.ags import group_names as names
         case "las":
-            from geofit.io.las import TABLES
-
-            return TABLES
+            from geofit.io.las import log_tables as names
         case "vector":
             from geofit.io.vector import layer_names as names
         case _:

@@ -2,15 +2,33 @@
 
 from __future__ import annotations
 
+import re
+from contextlib import suppress
+
+import numpy as np
+
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.io.cells import table_of
 from geofit.io.journal import Journal
+from geofit.io.no_data import is_no_data
 from geofit.io.sniff import decode
 from geofit.io.source import Source
 from geofit.io.tables import Table
 
-__all__ = ["read_vertices"]
+__all__ = ["object_name", "read_vertices", "stated_axis_units"]
+
+
+def object_name(line: str) -> str:
+    """Return the name that a line of the header states, ``name:Top T1`` or ``HEADER {name:Top T1}``; else ""."""
+    found = re.match(r"\s*(?:HEADER\s*\{\s*)?name:([^}]*)", line, re.IGNORECASE)
+    return found[1].strip().strip('"') if found else ""
+
+
+def stated_axis_units(line: str) -> list[str]:
+    """Return the units of x, y and z of a line ``AXIS_UNIT "m" " ft " m``."""
+    found = re.findall(r'"([^"]*)"|(\S+)', line.split(None, 1)[-1])
+    return [(quoted or bare).strip().casefold() for quoted, bare in found[:3]]
 
 
 def read_vertices(source: Source, journal: Journal) -> Table:
@@ -39,12 +57,12 @@ def read_vertices(source: Source, journal: Journal) -> Table:
         key = words[0].upper() if words else ""
         if key == "GOCAD":
             name, down = source.path.stem, False
-        elif key.startswith("NAME:"):
-            name = line.split(":", 1)[1].strip().strip('"') or name
+        elif stated := object_name(line):
+            name = stated
         elif key == "*NAME:" and words[1:]:
             name = words[1]
         elif key == "AXIS_UNIT":
-            units = ["", *(word.strip('"').casefold() for word in words[1:4])]
+            units = ["", *stated_axis_units(line)]
         elif key == "ZPOSITIVE" and words[1:]:
             down = words[1].casefold() == "depth"
             if down:
@@ -75,4 +93,8 @@ def read_vertices(source: Source, journal: Journal) -> Table:
 
 
 def _turned(z: str) -> str:
+    """Return a depth as an elevation; a mark for no data stays one."""
+    with suppress(ValueError):
+        if is_no_data(np.array(float(z))):
+            return z
     return z[1:] if z.startswith("-") else f"-{z.removeprefix('+')}"

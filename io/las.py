@@ -17,7 +17,7 @@ from geofit.io.sniff import decode
 from geofit.io.source import Source
 from geofit.io.tables import Table
 
-__all__ = ["TABLES", "read_log"]
+__all__ = ["log_tables", "read_log"]
 
 TABLES = ("WELL", "CURVES")
 
@@ -27,6 +27,20 @@ _WELL = {
     "y": ("YCOORD", "Y", "NORTH", "YWELL", "UTMY", "NORTHING"),
     "z": ("EREF", "EKB", "KB", "ELEV", "EGL", "GL", "EDF", "ELZ"),
 }
+
+
+def log_tables(source: Source) -> tuple[str, ...]:
+    """Return the tables of a log: the same for all of them.
+
+    Raises
+    ------
+    InputError
+        If no line of the file begins a section of LAS.
+    """
+    text, _ = decode(source.read(), source.name, source.encoding)
+    if not any(line.lstrip().startswith("~") for line in text.splitlines()):
+        raise _damaged(source)
+    return TABLES
 
 
 def read_log(source: Source, journal: Journal) -> Table:
@@ -108,12 +122,8 @@ def _open(source: Source, journal: Journal) -> tuple[Any, int]:
             warnings.simplefilter("ignore")
             log = lasio.read(text.replace("\r\n", "\n").replace("\r", "\n") + "\n", engine="normal")
             size = len(np.asarray(log.index, dtype=np.float64))
-    except failures as error:
-        raise InputError(
-            message("io.log-unreadable", "The log cannot be read: {error}", error=str(error) or type(error).__name__),
-            message("io.export-las", "Export it as LAS 2.0."),
-            file=source.name,
-        ) from None
+    except failures:
+        raise _damaged(source) from None
     if not size:
         raise InputError(
             message("io.log-without-sample", "The log has no sample"),
@@ -123,6 +133,14 @@ def _open(source: Source, journal: Journal) -> tuple[Any, int]:
     lines = text.splitlines()
     start = next((i for i, line in enumerate(lines) if line.lstrip().upper().startswith("~A")), 0)
     return log, start + 2
+
+
+def _damaged(source: Source) -> InputError:
+    return InputError(
+        message("io.log-unreadable", "The log is damaged, incomplete or not a LAS file"),
+        message("io.export-las", "Export it as LAS 2.0."),
+        file=source.name,
+    )
 
 
 def _head(log: Any, names: tuple[str, ...]) -> tuple[str, str]:

@@ -68,7 +68,7 @@ def read_obj(path: Path) -> TriangleMesh:
     source = Source(path=path)
     vertices: list[list[float]] = []
     faces: list[tuple[int, int, int]] = []
-    for row, line in enumerate(source.read().decode("utf-8", "replace").splitlines(), 1):
+    for row, line in enumerate(source.read().decode("utf-8-sig", "replace").splitlines(), 1):
         words = line.split()
         try:
             if words[:1] == ["v"]:
@@ -79,7 +79,10 @@ def read_obj(path: Path) -> TriangleMesh:
                 faces += [(corners[0], a, b) for a, b in pairwise(corners[1:])]
         except ValueError:
             raise _damaged(source, "OBJ", row) from None
-    return _checked(source, "OBJ", np.array(vertices, dtype=np.float64), np.array(faces, dtype=np.int64))
+    places = np.array([one for one in vertices if len(one) == 3], dtype=np.float64).reshape(-1, 3)
+    if len(places) < len(vertices):  # the file was cut off within a line
+        raise _damaged(source, "OBJ")
+    return _checked(source, "OBJ", places, np.array(faces, dtype=np.int64).reshape(-1, 3))
 
 
 def read_ply(path: Path) -> TriangleMesh:

@@ -213,9 +213,9 @@ def _features(source: Source, journal: Journal) -> list[Ring]:
         features = top["features"] if top["type"] == "FeatureCollection" else [top]
         shapes = [shapely.from_geojson(json.dumps(one)) for one in features]
         named = [one.get("properties") or {} for one in features]
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError, shapely.GEOSException) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError, shapely.GEOSException):
         raise InputError(
-            message("io.map-unreadable", "The map cannot be read: {error}", error=error),
+            message("io.map-unreadable", "The map is damaged or incomplete"),
             message("io.save-geojson-elevations", "Save polygons with elevations as GeoJSON."),
             file=source.name,
         ) from None

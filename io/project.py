@@ -325,7 +325,7 @@ def open_project(path: str | PathLike[str]) -> Project:
                 "io.project-incomplete",
                 "The project does not contain what version {version} requires: {error}",
                 version=version,
-                error=repr(error),
+                error=parser_message(error)[0] if isinstance(error, KeyError) else str(error),
             ),
             message("data.undo-last-edit", "Undo the last manual edit, or open a copy."),
             file=str(source),

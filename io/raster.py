@@ -37,9 +37,9 @@ def read_raster(source: Source, journal: Journal) -> Ground:
                 band = raster.read(1, masked=True)
                 place, crs, bands = raster.transform, raster.crs, raster.count
                 scale, offset, height = raster.scales[0], raster.offsets[0], raster.units[0] or ""
-    except (rasterio.errors.RasterioError, OSError, ValueError, MemoryError) as error:
+    except (rasterio.errors.RasterioError, OSError, ValueError, MemoryError):
         raise InputError(
-            message("io.raster-unreadable", "The raster cannot be read: {error}", error=error),
+            message("io.raster-unreadable", "The raster is damaged, incomplete or not a GeoTIFF"),
             message("io.save-as-geotiff", "Open it in a GIS and save it as GeoTIFF."),
             file=source.name,
         ) from None

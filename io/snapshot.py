@@ -86,9 +86,9 @@ def read_snapshot(path: Path) -> Site:
                     with archive.open(name) as stream:
                         arrays[name.removesuffix(".npy")] = np.lib.format.read_array(stream, allow_pickle=False)
         return _site(words, arrays)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, GeofitError, zipfile.BadZipFile) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, GeofitError, zipfile.BadZipFile):
         raise InputError(
-            message("io.snapshot-unreadable", "The earlier data cannot be read: {error}", error=str(error)),
+            message("io.snapshot-unreadable", "The earlier data are damaged or incomplete"),
             message("io.keep-snapshot", "Without this file the earlier state cannot be compared."),
             file=str(path),
         ) from None

@@ -38,13 +38,9 @@ def read_surfer(data: bytes, source: Source, journal: Journal) -> Ground:
             columns, rows, corners, z, blank = _binary_6(data)
         else:
             columns, rows, corners, z, blank = _binary_7(data)
-    except (struct.error, ValueError, IndexError, OverflowError) as error:
+    except (struct.error, ValueError, IndexError, OverflowError):
         raise InputError(
-            message(
-                "io.surfer-grid-damaged",
-                "The Surfer grid is damaged: {error}",
-                error=str(error) or type(error).__name__,
-            ),
+            message("io.surfer-grid-damaged", "The Surfer grid is damaged or incomplete"),
             message("io.export-grid-again", "Export the grid again."),
             file=source.name,
         ) from None

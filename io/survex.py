@@ -7,6 +7,7 @@ note. (Survex manual, "Survex data files".)
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -18,11 +19,12 @@ from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
 from geofit.data.files import is_file
 from geofit.data.given import arguments_checked
-from geofit.data.messages import EMPTY, Message, Untranslated, message
+from geofit.data.messages import EMPTY, Message, Untranslated, message, plural_message
 from geofit.data.site import ImportIssue
 from geofit.io.journal import Journal, Severity
+from geofit.io.sniff import decode
 from geofit.io.source import Source, as_source
-from geofit.io.survex_settings import QUANTITIES, Settings, finite, unit_of
+from geofit.io.survex_settings import CORRECTIONS, QUANTITIES, Settings, Unread, corrected_by, finite
 
 __all__ = ["read_survex"]
 
@@ -43,6 +45,7 @@ class _Reader:
         self.fixed: list[tuple[str, tuple[float, float, float], int]] = []
         self.read = self.used = self.anonymous = 0
         self.remarks: dict[str, int] = {}
+        self.uncorrected: dict[Unread, int] = {}
 
     def list_(self, severity: Severity, reason: Message, remedy: Message, file: str, row: int, value: str) -> None:
         self.journal.add(severity, file, reason, remedy, row=row, value=value)
@@ -55,7 +58,7 @@ class _Reader:
 
     def file(self, source: Source, settings: Settings, depth: int = 0) -> None:
         """Read one file and those that it includes."""
-        text = self.journal.read(source).decode(source.encoding or "utf-8", errors="replace")
+        text, _ = decode(self.journal.read(source), source.name, source.encoding)
         stack: list[tuple[str, Settings]] = []
         for row, line in enumerate(text.replace("\r\n", "\n").replace("\r", "\n").split("\n"), 1):
             cells = line.split(";")[0].replace(",", " ").split()
@@ -152,10 +155,10 @@ class _Reader:
                     return changed
                 case "units":
                     return settings.with_units(rest)
-                case "calibrate":
-                    return settings.with_calibration(rest)
-                case "declination":
-                    return replace(settings, declination=finite(rest[0]) * unit_of(rest[1])[1])
+                case "calibrate" | "declination":
+                    if re.search(r"\d,\d", line):  # a decimal comma would make the decimals a scale
+                        raise ValueError(line)
+                    return settings.with_correction(word, rest)
                 case "infer":
                     return settings.with_inference(rest[0].casefold(), rest[1].casefold() == "on")
                 case "flags":
@@ -180,11 +183,13 @@ class _Reader:
             self.list_(
                 "error",
                 message("io.command-unreadable", "The command *{word} cannot be read", word=Untranslated(word)),
-                message("io.correct-arguments", "Correct its arguments."),
+                CORRECTIONS.get(word, message("io.correct-arguments", "Correct its arguments.")),
                 file,
                 row,
                 line,
             )
+            if word in CORRECTIONS:
+                return settings.without_correction(Unread(word, corrected_by(word, rest), file, row, line))
             # What is in an unknown unit must not count as metres or degrees.
             return settings.without_units(rest) if word == "units" else settings
         self.list_(
@@ -214,7 +219,9 @@ class _Reader:
         if settings.style in ("normal", "passage"):
             try:
                 readings = dict(zip(order, cells, strict=False))
-                if len(cells) < len([name for name in order if name != "ignoreall"]):
+                needed = len([name for name in order if name != "ignoreall"])
+                # A decimal comma makes two cells of one: Survex takes it for a blank.
+                if len(cells) < needed or (len(cells) > needed and "ignoreall" not in order):
                     raise ValueError
                 if settings.style == "normal":
                     self.shot(readings, settings, row)
@@ -297,6 +304,21 @@ class _Reader:
         require_length(offset)
         counted = not (splay or settings.duplicate or settings.surface)
         self.shots.append((names[0], names[1], offset, row, counted, not (splay or settings.surface)))
+        for unread in settings.unread:
+            self.uncorrected[unread] = self.uncorrected.get(unread, 0) + 1
+
+    def warn_uncorrected(self) -> None:
+        """Warn of shots that are used as they were read, since a correction of them could not be read."""
+        for unread, count in self.uncorrected.items():
+            reason = plural_message(
+                "io.shots-uncorrected",
+                "{count} shot is used without the correction by {word}: its {what} are as measured",
+                "{count} shots are used without the correction by {word}: their {what} are as measured",
+                count=count,
+                word=Untranslated(f"*{unread.word}"),
+                what=unread.corrected,
+            ).with_severity("warning")
+            self.list_("warning", reason, CORRECTIONS[unread.word], unread.file, unread.row, unread.line)
 
     def survey(self, issues: Sequence[ImportIssue]) -> Survey:
         """Return what was read, equated stations under one name; ``issues`` may be why there is nothing."""
@@ -394,6 +416,7 @@ def read_survex(source: Source | str | Path, journal: Journal | None = None) -> 
     reader = _Reader(source, journal)
     with journal.handed_over():
         reader.file(source, Settings())
+        reader.warn_uncorrected()
         survey = reader.survey(journal.issues[first_issue:])
     if reader.remarks:
         names = ", ".join(f"*{name} ({count})" for name, count in sorted(reader.remarks.items()))

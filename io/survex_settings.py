@@ -9,16 +9,23 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 from geofit.io.units import METRES
 
-__all__ = ["QUANTITIES", "Settings", "finite", "unit_of"]
+__all__ = ["CORRECTIONS", "QUANTITIES", "Settings", "Unread", "corrected_by", "finite", "unit_of"]
 
 #: Readings of each kind, under the names used here.
 QUANTITIES = {
     "length": ("tape", "backtape", "left", "right", "up", "down"),
     "angle": ("compass", "backcompass", "clino", "backclino", "declination"),
     "walls": ("left", "right", "up", "down"),
+}
+#: Commands that correct readings, each with what is to be written for one that cannot be read.
+CORRECTIONS = {
+    "calibrate": message(
+        "io.write-calibrate", "Write *calibrate QUANTITY ZERO_ERROR, with units and a scale where they are needed."
+    ),
+    "declination": message("io.write-declination", "Write *declination VALUE degrees; auto is not computed."),
 }
 _SAME = {
     "length": "tape", "bearing": "compass", "gradient": "clino", "backlength": "backtape", "backbearing": "backcompass",
@@ -59,6 +66,26 @@ def finite(cell: str) -> float:
 
 
 @dataclass(frozen=True)
+class Unread:
+    """A correction that could not be read: its command, what it would have corrected, and where it is."""
+
+    word: str
+    corrected: Message
+    file: str
+    row: int
+    line: str
+
+
+def corrected_by(word: str, rest: Sequence[str]) -> Message:
+    """Return what a command corrects."""
+    names = {_SAME.get(cell.casefold(), cell.casefold()) for cell in rest} | {word}
+    lengths, angles = (bool(names & set(QUANTITIES[kind])) for kind in ("length", "angle"))
+    if lengths == angles:
+        return message("io.lengths-and-directions", "lengths and directions")
+    return message("io.lengths", "lengths") if lengths else message("io.directions", "directions")
+
+
+@dataclass(frozen=True)
 class Settings:
     """The state that ``*begin`` stores and ``*end`` restores.
 
@@ -78,6 +105,7 @@ class Settings:
     surface: bool = False
     splay: bool = False
     case: str = "tolower"
+    unread: tuple[Unread, ...] = ()
 
     def cased(self, name: str) -> str:
         """Return a name in the case that the file has set."""
@@ -133,6 +161,23 @@ class Settings:
             return replace(self, declination=-zero)
         entry = (zero, scale, unit is not None)
         return replace(self, calibration={**self.calibration, **dict.fromkeys(names, entry)})
+
+    def without_correction(self, unread: Unread) -> Settings:
+        """Return the settings after a correction that cannot be read."""
+        return replace(self, unread=(*self.unread, unread))
+
+    def with_correction(self, word: str, rest: list[str]) -> Settings:
+        """Return the settings after a correction; one that is stated anew is no longer unread."""
+        if word == "declination":
+            found = replace(self, declination=finite(rest[0]) * unit_of(rest[1])[1])
+        else:
+            found = self.with_calibration(rest)
+            word = "declination" if rest[0].casefold() == "declination" else word
+            if rest[0].casefold() == "default":
+                return replace(found, unread=())
+        if word == "calibrate":
+            return found
+        return replace(found, unread=tuple(one for one in self.unread if one.word != word))
 
     def with_inference(self, what: str, on: bool) -> Settings:
         """Return the settings after ``*infer``."""

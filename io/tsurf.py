@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.messages import Untranslated, message
 from geofit.geometry.mesh import Mesh
+from geofit.io.gocad import object_name, stated_axis_units
+from geofit.io.no_data import is_no_data
 from geofit.io.sniff import decode
 from geofit.io.source import Source
 from geofit.io.units import metres_of
@@ -27,6 +29,7 @@ class _Object:
         self.places: list[tuple[float, float, float]] = []
         self.number: dict[str, int] = {}
         self.triangles: list[tuple[int, int, int]] = []
+        self.ended = False
 
     def surface(self, name: str) -> MeshSurface:
         xyz = np.array(self.places) * self.units * (1.0, 1.0, -1.0 if self.down else 1.0)
@@ -71,6 +74,15 @@ def read_tsurf(path: str | Path) -> dict[str, MeshSurface]:
                 ) from None
             except InputError as error:
                 raise InputError(error.reason, error.remedy, file=source.name, row=row, value=line[:80]) from None
+    cut = next((one for one in objects if not one.ended), None)
+    if cut is not None and objects[0].triangles:
+        raise InputError(
+            message(
+                "io.tsurf-without-end", "The TSurf {name} has no END: lines may be missing", name=Untranslated(cut.name)
+            ),
+            message("io.export-tsurf-again", "Export the TSurf again."),
+            file=source.name,
+        )
     found: dict[str, MeshSurface] = {}
     for one in (one for one in objects if one.triangles):
         name, k = one.name, 2
@@ -88,18 +100,25 @@ def read_tsurf(path: str | Path) -> dict[str, MeshSurface]:
 
 def _take(one: _Object, key: str, line: str, words: Sequence[str]) -> None:
     """Take one line of an object."""
-    if key.startswith("NAME:"):
-        one.name = line.split(":", 1)[1].strip().strip('"') or one.name
+    if key == "END":
+        one.ended = True
+    elif stated := object_name(line):
+        one.name = stated
     elif key == "*NAME:":
         one.name = words[1]
     elif key == "AXIS_UNIT":
-        one.units = [metres_of(word.strip('"').casefold()) for word in words[1:4]]
+        one.units = [metres_of(word) for word in stated_axis_units(line)]
     elif key == "ZPOSITIVE":
         one.down = words[1].casefold() == "depth"
     elif key in ("VRTX", "PVRTX"):
         x, y, z = map(float, words[2:5])
         if not np.isfinite((x, y, z)).all():
             raise ValueError
+        if is_no_data(np.array(z)):
+            raise InputError(
+                message("io.vertex-without-elevation", "The elevation of this vertex is a mark for 'no data'"),
+                message("io.export-tsurf-without-gaps", "Export the TSurf without the triangles at it."),
+            )
         one.number[words[1]] = len(one.places)
         one.places.append((x, y, z))
     elif key in ("ATOM", "PATOM"):

@@ -120,15 +120,27 @@ def map_units(source: Source, crs: str, journal: Journal, height: str = "") -> t
     site's unit. Conversions are listed.
     """
     own = _of_crs(replace(source, crs=crs)) if source.unit is None else {}
-    if own and (up := unit_marked(height)) is not None:
-        own["z"] = METRES[up]
+    marked = unit_marked(height) if source.unit is None else None
+    if marked is not None and METRES[marked] != 1.0:
+        journal.add(
+            "note",
+            source.name,
+            message(
+                "io.band-unit-converted",
+                "The file states its elevations in {unit}; they are converted to metres",
+                unit=Untranslated(marked),
+            ),
+        )
     if not own:
         unit = grid_unit(source, journal)
-        return unit, unit
+        return unit, unit if marked is None else METRES[marked]
+    of_system = list(own)
+    if marked is not None:
+        own["z"], of_system = METRES[marked], [role for role in own if role != "z"]
     usual = 1.0 if source.usual_unit is None else metres_of(source.usual_unit, source.name)
     factors = {"z": usual, **own}
     doubtful = "z" not in own and source.usual_unit is None
-    _list_crs(replace(source, crs=crs), factors, list(own), journal, doubtful=doubtful)
+    _list_crs(replace(source, crs=crs), factors, of_system, journal, doubtful=doubtful)
     return factors["x"], factors["z"]
 
 

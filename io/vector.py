@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.messages import Untranslated, message
 from geofit.io.cells import number_text, table_of
 from geofit.io.crs import WGS84, refuse_degrees
 from geofit.io.extra import need
@@ -30,9 +30,11 @@ def layer_names(source: Source) -> tuple[str, ...]:
     pyogrio = need("pyogrio", "gis", message("io.reading-map", "Reading the map {file}", file=source.name))
     _recognise(source, data)
     try:
-        layers = pyogrio.list_layers(source.path)
-    except (pyogrio.errors.DataSourceError, OSError, ValueError) as error:
-        raise _damaged(source, error) from None
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of endings that do not suit the format
+            layers = pyogrio.list_layers(source.path)
+    except (pyogrio.errors.DataSourceError, OSError, ValueError):
+        raise _damaged(source) from None
     return tuple(str(name) for name, geometry in layers if geometry is not None)
 
 
@@ -51,15 +53,27 @@ def read_features(source: Source, journal: Journal) -> Table:
     _recognise(source, data)
     import shapely
 
+    layers = layer_names(source) if source.table else ()
+    if source.table and source.table.casefold() not in map(str.casefold, layers):
+        raise InputError(
+            message(
+                "io.layer-missing",
+                "The map has no layer '{name}'; its layers are {names}",
+                name=Untranslated(source.table),
+                names=", ".join(layers) or message("data.none", "none"),
+            ),
+            message("data.name-one", "Name one of them."),
+            file=source.name,
+        )
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             meta, _, wkb, fields = pyogrio.raw.read(source.path, layer=source.table or None)
         shapes = shapely.from_wkb(wkb) if wkb is not None else np.array([])
-    except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, shapely.GEOSException) as error:
-        raise _damaged(source, error) from None
-    except (OSError, ValueError, RuntimeError, UnicodeError) as error:
-        raise _damaged(source, error) from None
+    except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, shapely.GEOSException):
+        raise _damaged(source) from None
+    except (OSError, ValueError, RuntimeError, UnicodeError):
+        raise _damaged(source) from None
     crs = str(meta.get("crs") or "")
     if crs == WGS84 and data.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{") and not _may_be_degrees(shapes):
         crs = ""
@@ -148,9 +162,9 @@ def _text(value: Any) -> str:
     return number_text(float(value)) if isinstance(value, (int, float, np.number)) else str(value)
 
 
-def _damaged(source: Source, error: Exception) -> InputError:
+def _damaged(source: Source) -> InputError:
     return InputError(
-        message("io.map-unreadable", "The map cannot be read: {error}", error=error),
+        message("io.map-unreadable", "The map is damaged or incomplete"),
         message("io.save-as-geopackage", "Open it in a GIS and save it as GeoPackage."),
         file=source.name,
     )

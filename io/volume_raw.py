@@ -42,8 +42,14 @@ def shape_and_type(
     """
     remedy = message(
         "io.state-shape-and-type",
-        "State the shape, slowest axis first, and the type: shape=(n0, n1, n2), dtype='uint8'.",
+        "State the shape, slowest axis first: --shape 200,200,100, in Python shape and dtype.",
     )
+    if not size:
+        raise InputError(
+            message("io.volume-empty", "the file is empty"),
+            message("io.export-volume-again", "Export the volume again."),
+            file=str(path),
+        )
     found: tuple[int, ...] | None = None if shape is None else tuple(int(n) for n in shape)
     if found is None:
         three = re.search(r"(\d+)[xX](\d+)[xX](\d+)", file)

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.errors import InputError
+from geofit.data.errors import GeofitError, InputError
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.io.volume_raw import map_meta_image, shape_and_type
 from geofit.io.volume_tiff import slice_files
 from geofit.io.volume_zarr import open_zarr
-from geofit.io.volumes import RAW, TIFF, is_zarr
+from geofit.io.volumes import RAW, TIFF, damaged_volume, is_zarr
 from geofit.pores.sliced import SlicedVolume, Voxels
 
 __all__ = ["map_voxels", "open_volume", "sliceable"]
@@ -142,12 +142,10 @@ def map_voxels(path: Path) -> Voxels:
 def _readable(path: Path) -> Iterator[None]:
     try:
         yield
-    except OSError as error:
-        raise InputError(
-            message("io.file-damaged-incomplete", "the file is damaged or incomplete ({error})", error=error),
-            message("io.copy-export-again", "Copy or export it again."),
-            file=str(path),
-        ) from None
+    except GeofitError:
+        raise
+    except Exception:  # each library that maps a file has errors of its own
+        raise damaged_volume(path) from None
 
 
 def _voxels(
@@ -159,12 +157,15 @@ def _voxels(
     if kind in TIFF:
         return _TiffPages([path]), None
     if kind == ".npy":
-        return np.load(path, mmap_mode="r", allow_pickle=False), None
+        found = np.load(path, mmap_mode="r", allow_pickle=False)
+        if not isinstance(found, np.ndarray):  # an archive of arrays with the ending of one
+            raise damaged_volume(path)
+        return found, None
     if kind in (".mhd", ".mha"):
         return map_meta_image(path)
     if kind in RAW:
-        found, stored = shape_and_type(path.name, path.stat().st_size, shape, dtype, path)
-        return np.memmap(path, stored, "r", shape=found), None
+        edges, stored = shape_and_type(path.name, path.stat().st_size, shape, dtype, path)
+        return np.memmap(path, stored, "r", shape=edges), None
     raise InputError(
         message(
             "io.not-slice-by-slice",

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.messages import Untranslated, message
 from geofit.io.extra import need
 
 __all__ = ["open_zarr"]
@@ -28,7 +28,12 @@ def open_zarr(path: Path, name: str | None) -> Any:
                     count=len(names),
                     names=", ".join(names[:8]),
                 ),
-                message("io.name-array", "Leave one in the file, or state which one in Python: name='...'."),
+                message(
+                    "io.name-volume",
+                    "Leave one in the file, or name it: --name {example} of geofit pores and metaballs, "
+                    "name='{example}' in Python.",
+                    example=Untranslated(names[0] if names else "..."),
+                ),
                 file=str(path),
             )
         node = node[names[0]]

@@ -19,19 +19,19 @@ from numpy.typing import NDArray
 from geofit.data.errors import GeofitError, InputError
 from geofit.data.files import is_file
 from geofit.data.given import arguments_checked
-from geofit.data.messages import message
+from geofit.data.messages import Untranslated, message
 from geofit.io.volume_raw import read_meta_image, shape_and_type
 from geofit.io.volume_tiff import read_tiff, read_tiff_folder
 from geofit.pores.memory import check_memory
 from geofit.pores.volume import RockVolume, VolumeError
 
-__all__ = ["RAW", "TIFF", "is_zarr", "read_volume", "read_voxels"]
+__all__ = ["RAW", "TIFF", "damaged_volume", "is_zarr", "read_volume", "read_voxels"]
 
 TIFF = (".tif", ".tiff")
 RAW = (".raw", ".bin", ".dat")
-#: What can be read, for messages.
 #: Bytes that are unpacked before memory is looked at again.
 _PART = 1 << 26
+#: What can be read, for messages.
 KINDS = "raw, mhd, mha, tif, npy, npz, zarr, also as .gz or in a .zip"
 
 
@@ -123,12 +123,26 @@ def read_voxels(
         return _read_bytes(path, path.name, None, shape, dtype, name)
     except GeofitError:
         raise
-    except Exception as error:  # each library that unpacks has errors of its own
-        raise InputError(
-            message("io.file-damaged-incomplete", "the file is damaged or incomplete ({error})", error=error),
-            message("io.copy-export-again", "Copy or export it again."),
-            file=str(path),
-        ) from None
+    except Exception:  # each library that unpacks has errors of its own
+        raise damaged_volume(path) from None
+
+
+def damaged_volume(path: Path) -> InputError:
+    """Return the error for a volume that its library cannot read: what that reports is for programmers."""
+    packed = path.suffix.lower() in (".gz", ".zip")
+    if path.is_dir():
+        what = message("io.folder-not-volume", "the folder holds no volume that can be read")
+    elif not path.stat().st_size:
+        what = message("io.volume-empty", "the file is empty")
+    else:
+        what = message(
+            "io.file-damaged-incomplete",
+            "the file is damaged, incomplete or not of the format that its ending states: {ending}",
+            ending=Untranslated("".join(path.suffixes[-2:]) if packed else path.suffix),
+        )
+    return InputError(
+        what, message("io.export-volume", "Export the volume as one of: {kinds}.", kinds=KINDS), file=str(path)
+    )
 
 
 def _read_folder(path: Path, name: str | None) -> NDArray[Any]:
@@ -164,8 +178,7 @@ def _read_bytes(
         return read_tiff(source, path.name), None
     if kind in (".npy", ".npz"):
         with path.open("rb") if data is None else BytesIO(data) as stream:  # numpy leaves a damaged file open
-            loaded: Any = np.load(stream, allow_pickle=False)
-            return loaded if kind == ".npy" else loaded[_one_of(list(loaded.files), name, path)], None
+            return _numbers(np.load(stream, allow_pickle=False), name, path), None
     if kind in (".mhd", ".mha"):
         return read_meta_image(path, data)
     if kind in RAW:
@@ -177,6 +190,14 @@ def _read_bytes(
         message("io.export-volume", "Export the volume as one of: {kinds}.", kinds=KINDS),
         file=str(path),
     )
+
+
+def _numbers(loaded: Any, name: str | None, path: Path) -> NDArray[Any]:
+    """Return a numpy array, or the chosen one of an archive of them (npz)."""
+    if isinstance(loaded, np.ndarray):
+        return loaded
+    arrays = [one for one in loaded.files if f"{one}.npy" in loaded.zip.namelist()]
+    return np.asarray(loaded[_one_of(arrays, name, path)])
 
 
 def _unpacked(stream: gzip.GzipFile, path: Path) -> bytes:
@@ -208,8 +229,8 @@ def _one_of(names: list[str], wanted: str | None, path: Path) -> str:
         return names[0]
     if not names:
         raise InputError(
-            message("io.volume-unreadable", "its volume cannot be read"),
-            message("io.known-volume-kinds", "Known kinds: {kinds}.", kinds=KINDS),
+            message("io.volume-unreadable", "the archive contains no volume"),
+            message("io.export-volume", "Export the volume as one of: {kinds}.", kinds=KINDS),
             file=str(path),
         )
     raise InputError(
@@ -221,8 +242,9 @@ def _one_of(names: list[str], wanted: str | None, path: Path) -> str:
         ),
         message(
             "io.name-volume",
-            "Leave one in the file, or state which one in Python: name='{example}'.",
-            example=sorted(names)[0],
+            "Leave one in the file, or name it: --name {example} of geofit pores and metaballs, "
+            "name='{example}' in Python.",
+            example=Untranslated(sorted(names)[0]),
         ),
         file=str(path),
     )

@@ -13,7 +13,7 @@ from typing import Any
 from xml.etree.ElementTree import ParseError
 
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 from geofit.io.cells import number_text, table_of
 from geofit.io.extra import need
 from geofit.io.journal import Journal
@@ -128,19 +128,26 @@ def _opened(source: Source, data: bytes) -> Iterator[Any]:
             book = openpyxl.load_workbook(io.BytesIO(data), read_only=True, data_only=True)
             yield book
             book.close()
-    except failures as error:
+    except failures:
         raise InputError(
-            message(
-                "io.workbook-unreadable",
-                "The workbook cannot be read: {error}",
-                error=str(error) or type(error).__name__,
-            ),
+            _unreadable(data),
             message(
                 "io.save-workbook-again",
                 "Open it in a spreadsheet program and save it as .xlsx, or the sheet as CSV UTF-8.",
             ),
             file=source.name,
         ) from None
+
+
+def _unreadable(data: bytes) -> Message:
+    """Return why a workbook cannot be read, by how the file begins."""
+    if not data:
+        return message("io.workbook-empty", "The workbook is empty: the file has no byte")
+    if data.startswith(b"\xd0\xcf\x11\xe0"):
+        return message("io.workbook-old", "The workbook is one of the old format .xls, or it has a password")
+    if not data.startswith(b"PK"):
+        return message("io.file-not-workbook", "The file is not an .xlsx workbook")
+    return message("io.workbook-unreadable", "The workbook cannot be read: it is damaged or incomplete")
 
 
 def _require_size(data: bytes, file: str) -> None:

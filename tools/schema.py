@@ -24,7 +24,7 @@ from geofit.data.prediction import LeftOutBody
 from geofit.data.verdict import Lamp
 from geofit.pores.table import BeforeAfter
 from geofit.report.accuracy_report import AccuracyReport, HorizonReport, InputFile, RejectedRow
-from geofit.report.schema import SCHEMA_FILE, VERSION
+from geofit.report.schema import SCHEMA_FILE, VERSION, ErrorReport
 
 SIMPLE = {str: "string", int: "integer", float: "number", bool: "boolean", type(None): "null"}
 ANYTHING: dict[str, Any] = {}
@@ -144,6 +144,7 @@ def schema() -> dict[str, Any]:
         _document("report", report, {}, {"out": {"type": "string"}}),
         _document("horizon", horizon, origin, {}),
         _document("failure", None, {"failures": messages, "versions": words}, {"out": {"type": "string"}}),
+        _document("error", s.define(ErrorReport)["$ref"], {}, {}),
         _document("body", body, of_body, {"files": files}),
         _document("pores", pores, of_pores, {"files": files}),
         _document("pore-network", None, of_pores, {"files": files}),

@@ -64,8 +64,8 @@ def iges_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
 def read_brep(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     """Read the shapes of a BREP file, in the file's coordinates, which must be metres: the format has no unit.
 
-    Each part of the outermost compound is a surface, unless all of them are single faces, which are one. The
-    format has no names either: they are the file's, numbered.
+    Each part of the outermost compound is a surface, a shell of one face too; loose faces are one surface. The format
+    has no names either: they are the file's, numbered.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def brep_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     """Read a BREP file in this process, which a damaged file may end; see :func:`read_brep`."""
     from OCP.BRep import BRep_Builder
     from OCP.BRepTools import BRepTools
-    from OCP.TopAbs import TopAbs_COMPOUND
+    from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_FACE
     from OCP.TopLoc import TopLoc_Location
     from OCP.TopoDS import TopoDS_Iterator, TopoDS_Shape
 
@@ -100,7 +100,7 @@ def brep_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
         while walk.More():
             parts += [walk.Value()] if faces_of(walk.Value()) else []
             walk.Next()
-    if all(len(faces_of(part)) == 1 for part in parts):
+    if all(part.ShapeType() == TopAbs_FACE for part in parts):
         parts = [whole]
     found: dict[str, PatchSurface] = {}
     for part in parts:

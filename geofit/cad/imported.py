@@ -299,6 +299,12 @@ def existing(path: str | PathLike[str]) -> Path:
         If it is not.
     """
     source = Path(path)
+    if source.is_dir():
+        raise InputError(
+            message("cad.path-is-folder", "This is a folder, not a file"),
+            message("cad.name-file-in-folder", "Name a file in it."),
+            file=str(source),
+        )
     if not is_file(source):
         raise InputError(
             message("data.file-missing", "There is no such file"),

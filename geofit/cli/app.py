@@ -2,16 +2,43 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import sys
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from geofit import __version__
 
 __all__ = ["app"]
 
+
+class _Commands(TyperGroup):
+    """The commands; wrong usage is a document on stdout, too, where ``--json`` is given."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except Exception as error:
+            # The base of wrong usage, which typer does not export, has moved between its releases.
+            if "--json" in sys.argv and hasattr(error, "format_message"):
+                _print_usage(error.format_message(), getattr(error, "ctx", None) or ctx)
+            raise
+
+
+def _print_usage(problem: str, where: Any) -> None:
+    from geofit.cli.console import print_error
+    from geofit.data.errors import InputError
+    from geofit.data.messages import message
+
+    reason = message("cli.wrong-usage", "{problem}", problem=problem)
+    help_ = message("cli.see-help", "{command} --help lists what it takes.", command=where.command_path)
+    print_error(InputError(reason, help_), 2)
+
+
 app = typer.Typer(
     name="geofit",
+    cls=_Commands,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,

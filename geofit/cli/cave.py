@@ -70,6 +70,8 @@ def cave(
         print_json({**run.figures(), "files": [str(file) for file in run.files]})
     else:
         _print(run)
+    for warning in run.uncorrected:
+        say(f"warning: {warning}")
     say(f"Files: {', '.join(file.name for file in run.files)} in {out}")
     return 0
 

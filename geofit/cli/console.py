@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any, ParamSpec
 
 import typer
 
-from geofit.data.errors import Cancelled, GeofitError, InputError
+from geofit.data.errors import Cancelled, GeofitError, InputError, MissingDependencyError
 from geofit.data.files import cannot_write, folder_for, inputs_kept
-from geofit.data.messages import Message, gravest_first
+from geofit.data.messages import Message, gravest_first, message
 from geofit.data.progress import Progress
 from geofit.data.site import ImportIssue, TableCount
 
@@ -30,6 +30,7 @@ __all__ = [
     "list_issues",
     "listening",
     "print_counts",
+    "print_error",
     "print_issues",
     "print_json",
     "print_results",
@@ -68,7 +69,10 @@ FIRST_ISSUES = 5
 
 
 def with_exit_code(command: Callable[P, int]) -> Callable[P, None]:
-    """Turn a command's number into the exit code, and known errors into one clear line; keep the command's inputs."""
+    """Turn a command's number into the exit code, and known errors into one clear line; keep the command's inputs.
+
+    With ``--json`` stdout gets the error as a document, so that what reads it finds one in every case.
+    """
 
     @wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
@@ -79,30 +83,45 @@ def with_exit_code(command: Callable[P, int]) -> Callable[P, None]:
     def exit_code(*args: P.args, **kwargs: P.kwargs) -> int:
         try:
             return command(*args, **kwargs)
-        except Cancelled as stop:
-            say(str(stop))
-            return 130
-        except KeyboardInterrupt:
-            say("Stopped. Files that were begun have been removed; finished ones are whole.")
-            return 130
-        except GeofitError as error:
-            _list_reasons(error, kwargs)
-            say(f"geofit: {error}")
-            return 2
-        except OSError as error:
-            # A full disk, a folder that may not be written: the user's to correct.
-            if isinstance(error, BrokenPipeError):
+        except (GeofitError, KeyboardInterrupt, OSError, ImportError) as raised:
+            error = _known(raised)
+            if error is None:
                 raise
-            say(f"geofit: {cannot_write(error, error.filename or 'a file')}")
-            return 2
-        except ImportError as error:
-            advice = _system_library(str(error))
-            if advice is None:
-                raise
-            say(f"geofit: {advice}")
-            return 2
+        stopped = isinstance(error, Cancelled)
+        code = 130 if stopped else 2
+        _list_reasons(error, kwargs)
+        say(str(error) if stopped else f"geofit: {error}")
+        if kwargs.get("as_json"):
+            print_error(error, code)
+        return code
 
     return run
+
+
+def _known(error: BaseException) -> GeofitError | None:
+    """Return an error as one with a sentence for the user; None for one that is a defect of the program."""
+    match error:
+        case GeofitError():
+            return error
+        case KeyboardInterrupt():
+            return Cancelled(
+                message("cli.stopped", "Stopped. Files that were begun have been removed; finished ones are whole.")
+            )
+        case BrokenPipeError():
+            return None
+        case OSError():
+            # A full disk, a folder that may not be written: the user's to correct.
+            return cannot_write(error, error.filename or "a file")
+        case ImportError():
+            return _system_library(str(error))
+    return None
+
+
+def print_error(error: GeofitError, code: int) -> None:
+    """Write an error and the exit code as one JSON document to stdout."""
+    from geofit.report.schema import error_document
+
+    print_json(error_document(error, code))
 
 
 def _kept(options: Mapping[str, object]) -> AbstractContextManager[None]:
@@ -138,15 +157,28 @@ def _issue_file(options: Mapping[str, object]) -> Path | None:
     return None
 
 
-def _system_library(message: str) -> str | None:
-    found = _MISSING.search(message)
+def _system_library(text: str) -> MissingDependencyError | None:
+    found = _MISSING.search(text)
     if found is None:
         return None
     library = found[1]
     package = next((package for stem, package in _PACKAGES.items() if library.startswith(stem)), None)
     if package is None:
-        return f"The system library {library} is missing. Find its package (Debian: apt-file search {library})."
-    return f"The system library {library} is missing. Install it (Debian and Ubuntu: apt-get install {package})."
+        return MissingDependencyError(
+            message(
+                "cli.library-missing",
+                "The system library {library} is missing. Find its package (Debian: apt-file search {library}).",
+                library=library,
+            )
+        )
+    return MissingDependencyError(
+        message(
+            "cli.library-of-package-missing",
+            "The system library {library} is missing. Install it (Debian and Ubuntu: apt-get install {package}).",
+            library=library,
+            package=package,
+        )
+    )
 
 
 def say(text: Message | str) -> None:

@@ -9,7 +9,7 @@ import typer
 from geofit.cli.app import app
 from geofit.cli.console import listening, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Json, Out
-from geofit.cli.volumes import PoreLabel, Shape, VolumeFile, VoxelEdge, read_options, stem_of
+from geofit.cli.volumes import ArrayName, PoreLabel, Shape, VolumeFile, VoxelEdge, read_options, stem_of
 
 __all__ = ["metaballs"]
 
@@ -22,6 +22,7 @@ def metaballs(
     pore: PoreLabel,
     voxel: VoxelEdge = None,
     shape: Shape = None,
+    name: ArrayName = None,
     balls: Annotated[int | None, typer.Option(help="Stop at this number of balls. Default: 99.5 % covered.")] = None,
     as_json: Json = False,
 ) -> int:
@@ -29,7 +30,7 @@ def metaballs(
     from geofit.io.volumes import read_volume
     from geofit.project.metaballs_run import run_metaballs
 
-    volume = read_volume(**read_options(source, pore, voxel, shape))
+    volume = read_volume(**read_options(source, pore, voxel, shape, name))
     with listening() as progress:
         run = run_metaballs(volume, out, stem_of(source), max_balls=balls, progress=progress)
     if as_json:

@@ -10,7 +10,7 @@ import typer
 from geofit.cli.app import app
 from geofit.cli.console import listening, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Json, Lang, LanguageCode, Out, Report
-from geofit.cli.volumes import PoreLabel, Shape, VolumeFile, VoxelEdge, read_options, stem_of
+from geofit.cli.volumes import ArrayName, PoreLabel, Shape, VolumeFile, VoxelEdge, read_options, stem_of
 
 if TYPE_CHECKING:
     from geofit.pores.table import PoreFigures
@@ -29,6 +29,7 @@ def pores(
     pore: PoreLabel,
     voxel: VoxelEdge = None,
     shape: Shape = None,
+    name: ArrayName = None,
     slabs: Annotated[
         bool, typer.Option("--slabs", help="Leave the volume on the disk: balls and network, but no surface.")
     ] = False,
@@ -41,7 +42,7 @@ def pores(
     from geofit.io.volumes import read_volume
     from geofit.project.pores_run import run_pores
 
-    options = read_options(source, pore, voxel, shape)
+    options = read_options(source, pore, voxel, shape, name)
     volume = open_volume(**options) if slabs else read_volume(**options)
     with listening() as progress:
         run = run_pores(volume, out, stem_of(source), progress)

@@ -11,7 +11,7 @@ from geofit.data.errors import SettingsError
 from geofit.data.legible import legible
 from geofit.data.messages import message
 
-__all__ = ["PoreLabel", "Shape", "VolumeFile", "VoxelEdge", "read_options", "stem_of"]
+__all__ = ["ArrayName", "PoreLabel", "Shape", "VolumeFile", "VoxelEdge", "read_options", "stem_of"]
 
 VolumeFile = Annotated[
     Path, typer.Argument(metavar="VOLUME", help="tif, raw, mhd, npy, npz, zarr (also .gz, .zip), folder of slices.")
@@ -21,9 +21,15 @@ VoxelEdge = Annotated[
     str | None, typer.Option(help="Edge of a voxel, m; or three, by comma. Default: the file's, where it states one.")
 ]
 Shape = Annotated[str | None, typer.Option(help="Raw file: voxels along each axis, slowest first: 200,200,100.")]
+ArrayName = Annotated[
+    str | None,
+    typer.Option("--name", help="Which of several: array of an npz file or zarr store, file of a zip archive."),
+]
 
 
-def read_options(source: Path, pore: list[float], voxel: str | None, shape: str | None) -> dict[str, Any]:
+def read_options(
+    source: Path, pore: list[float], voxel: str | None, shape: str | None, name: str | None
+) -> dict[str, Any]:
     """Return the options of a volume as :func:`geofit.read_volume` and :func:`geofit.open_volume` take them.
 
     Raises
@@ -37,6 +43,7 @@ def read_options(source: Path, pore: list[float], voxel: str | None, shape: str 
         "pore": pore[0] if len(pore) == 1 else pore,
         "voxel": edges[0] if edges is not None and len(edges) == 1 else edges,
         "shape": None if shape is None else [round(n) for n in _numbers(shape, "--shape")],
+        "name": name,
     }
 
 

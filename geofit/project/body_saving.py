@@ -13,6 +13,7 @@ from geofit import __version__
 from geofit.data.errors import GeofitError, InputError, SettingsError
 from geofit.data.messages import message
 from geofit.implicit.mesh import TriangleMesh
+from geofit.io.parser_errors import parser_message
 from geofit.io.project import Project, ProjectBody
 from geofit.project.body_building import BodyResult
 from geofit.project.body_record import BodyProvenance, BodyRecord
@@ -83,7 +84,7 @@ def records_of(project: Project) -> dict[str, BodyRecord]:
                     "project.body-unreadable",
                     "The project does not say what body '{name}' is made from: {error}",
                     name=body.name,
-                    error=repr(error),
+                    error=parser_message(error)[0] if isinstance(error, KeyError) else str(error),
                 ),
                 message("data.undo-last-edit", "Undo the last manual edit, or open a copy."),
                 file=project.name,

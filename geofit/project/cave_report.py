@@ -47,7 +47,7 @@ def write_cave_report(
     sheet = cave_sheet(run.triangles, run.adjusted.xyz)
     found = CaveFindings(
         name, run.body, run.volume, run.spacing, run.triangles.volume, run.strata, run.clearance, sheet.scale,
-        sheet.azimuth, ("plan", "section"), file_stems([name])[name],
+        sheet.azimuth, ("plan", "section"), file_stems([name])[name], run.uncorrected,
     )  # fmt: skip
     images = draw_cave(found, sheet, run.triangles, t)
     view = cave_picture("view", name)

@@ -22,11 +22,14 @@ if TYPE_CHECKING:
     from geofit.caves.strata import Stratum
     from geofit.caves.survey import Survey
     from geofit.caves.uncertainty import VolumeEstimate
+    from geofit.data.messages import Message
     from geofit.implicit.mesh import TriangleMesh
     from geofit.surfaces.protocol import HasElevation
 
 __all__ = ["CaveRun", "cut_passages", "measure_passages", "read_survey", "write_passages"]
 
+#: Code of the reader's warning of shots that are used without a correction.
+UNCORRECTED = "io.shots-uncorrected"
 #: Spacing of the triangles, in units of the spacing that resolves most sections; where they miss more than this share
 #: of the volume, they become finer, up to about so many triangles.
 COARSER, MISSED, MOST_TRIANGLES = 3.0, 0.01, 400_000
@@ -54,6 +57,11 @@ class CaveRun:
         """Stations and loops."""
         return self.body.adjusted
 
+    @property
+    def uncorrected(self) -> tuple[Message, ...]:
+        """Warnings of shots that are used without a correction: their directions or lengths are as measured."""
+        return tuple(one.reason for one in self.adjusted.survey.issues if one.reason.code == UNCORRECTED)
+
     def figures(self) -> dict[str, Any]:
         """Return everything that the JSON file has, as plain data; metres."""
         from geofit import __version__
@@ -76,6 +84,7 @@ class CaveRun:
             "stations": len(survey.stations),
             "shots": len(survey.start),
             "length": survey.length,
+            "uncorrected": plain(self.uncorrected),
             "loops": plain(loops),
             "filled_walls": plain(self.body.sections.filled),
             "volume": {**plain(estimate), "sigma": estimate.sigma, "p10": estimate.p10, "p90": estimate.p90},

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from geofit.caves.clearance import Clearance
     from geofit.caves.strata import Stratum
     from geofit.caves.uncertainty import VolumeEstimate
+    from geofit.data.messages import Message
 
 __all__ = ["CaveFindings", "cave_chapter", "cave_picture"]
 
@@ -45,7 +46,7 @@ class CaveFindings:
 
     ``spacing`` is that of their triangles, metres, and ``mesh_volume`` the volume within them; ``scale`` that of the
     drawings, one to so many; ``azimuth`` that of the plane of the long section, degrees; ``pictures`` those that were
-    drawn; ``stem`` the name of the tables.
+    drawn; ``stem`` the name of the tables; ``uncorrected`` warns of shots without a correction.
     """
 
     name: str
@@ -59,6 +60,7 @@ class CaveFindings:
     azimuth: float = 0.0
     pictures: tuple[str, ...] = ()
     stem: str = ""
+    uncorrected: tuple[Message, ...] = ()
 
 
 def cave_picture(what: str, name: str) -> str:
@@ -68,7 +70,8 @@ def cave_picture(what: str, name: str) -> str:
 
 def cave_chapter(found: CaveFindings, t: Language) -> Chapter:
     """Lay out everything about one survey."""
-    blocks: list[Block] = [_facts(found, t), *_drawings(found, t), *_loops(found, t), *_volume(found, t)]
+    warnings = [Paragraph(sentence(one, t), "warning") for one in found.uncorrected]
+    blocks: list[Block] = [_facts(found, t), *warnings, *_drawings(found, t), *_loops(found, t), *_volume(found, t)]
     blocks += [*_strata(found, t), *_clearance(found, t), *_data(found, t), *_method(found, t)]
     blocks += _walls(found, t)  # last, for its table can fill pages
     return Chapter(t("Passages of {name}", name=found.name), tuple(blocks))

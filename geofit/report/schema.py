@@ -9,20 +9,24 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from geofit.data.accuracy import plain
+from geofit.data.errors import GeofitError, InputError
 from geofit.data.files import replacing
-from geofit.data.messages import Message
-from geofit.report.accuracy_report import AccuracyReport
+from geofit.data.messages import EMPTY, Message
+from geofit.report.accuracy_report import AccuracyReport, RejectedRow
 from geofit.report.gather import horizon_report, inputs_of, rejected_rows, versions
 from geofit.report.result import HorizonResult
 
 __all__ = [
     "SCHEMA_FILE",
     "VERSION",
+    "ErrorReport",
     "enveloped",
+    "error_document",
     "failed_document",
     "horizon_document",
     "report_document",
@@ -54,6 +58,35 @@ def report_document(report: AccuracyReport) -> dict[str, Any]:
 def failed_document(failures: Mapping[str, Message]) -> dict[str, Any]:
     """Return the document of a run of which nothing could be fitted."""
     return enveloped("failure", {"failures": plain(failures), "versions": dict(versions())})
+
+
+@dataclass(frozen=True)
+class ErrorReport:
+    """Why a command ended without results.
+
+    ``text`` is the line on stderr; ``reason`` states what is wrong, ``remedy`` what to do about it: null where the
+    reason includes it. ``rejected`` holds the rows of tables that were found until then.
+    """
+
+    exit_code: int
+    text: str
+    reason: Message
+    remedy: Message | None
+    file: str | None
+    row: int | None
+    column: str | None
+    value: str | None
+    rejected: tuple[RejectedRow, ...]
+
+
+def error_document(error: GeofitError, exit_code: int) -> dict[str, Any]:
+    """Return the document of a command that ended with an error: what ``--json`` prints in place of results."""
+    reason, remedy = (error.reason, error.remedy) if isinstance(error, InputError) else (error.message, EMPTY)
+    file, row, column, value = (getattr(error, name, None) for name in ("file", "row", "column", "value"))
+    rejected = rejected_rows(error.issues)
+    grave = reason.with_severity("error")
+    report = ErrorReport(exit_code, str(error), grave, remedy or None, file, row, column, value, rejected)
+    return enveloped("error", plain(report))
 
 
 def horizon_document(result: HorizonResult) -> dict[str, Any]:

@@ -87,9 +87,9 @@ def write_geotiff(grid: Ground, path: str | PathLike[str], crs: str = "") -> Non
     transform = rasterio.Affine(step, 0, grid.x[0] - step / 2, 0, -step, grid.y[-1] + step / 2)
     try:
         system = rasterio.crs.CRS.from_user_input(crs) if crs else None
-    except rasterio.errors.CRSError as error:
+    except rasterio.errors.CRSError:
         raise InputError(
-            message("io.written-crs-unknown", "The coordinate system is unknown: {error}", error=error),
+            message("io.written-crs-unknown", "The coordinate system is unknown to PROJ"),
             message("io.give-epsg-or-none", "Give one as EPSG:number, or none: --crs ''."),
             file=str(path),
             value=crs,

@@ -222,7 +222,7 @@ def write_statoil(
     radius = np.concatenate([ends.inscribed[use], throats.inscribed]) * unit
     area = np.concatenate([ends.area[use], throats.area]) * unit**2
     wall = np.concatenate([ends.perimeter[use], throats.perimeter]) * unit
-    factor = np.minimum(area / np.maximum(wall, 1e-300) ** 2, 0.25 / np.pi)
+    factor = np.minimum(area / np.maximum(wall, 1e-150) ** 2, 0.25 / np.pi)  # the square of 1e-300 is 0
     halves = np.concatenate([np.column_stack([np.zeros(use.sum()), ends.length[use]]), throats.length]) * unit
     wide = np.where(first > 0, pores.inscribed[np.maximum(first, 1) - 1], np.inf) if len(pores) else np.zeros(0)
     widths = np.column_stack([wide, pores.inscribed[second - 1] if len(pores) else np.zeros(0)]) * unit

@@ -1,7 +1,8 @@
 """Triangle formats of viewers and printers: OBJ, PLY, STL and glTF.
 
-OBJ and PLY hold map coordinates in double precision. STL and glTF store single precision, which at 3e6 m is a
-quarter of a metre: their coordinates are relative to an origin, written to ``FILE.origin.txt`` beside them.
+OBJ and PLY hold the coordinates of the data in double precision: those of the map where the data are in them. STL and
+glTF store single precision, which at 3e6 m is a quarter of a metre: their coordinates are relative to an origin,
+written to ``FILE.origin.txt`` beside them.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ __all__ = ["common_origin", "write_glb", "write_obj", "write_ply", "write_stl"]
 
 Floats = NDArray[np.float64]
 
+#: What the head of OBJ and PLY files states: whether the data are in map coordinates, no writer knows.
+COORDINATES = "metres, coordinates as in the data, no offset"
 #: Base colours of the horizons in turn in glTF: earth tones that stay apart.
 COLOURS = ((0.76, 0.60, 0.42), (0.55, 0.64, 0.45), (0.45, 0.56, 0.68), (0.70, 0.47, 0.43), (0.60, 0.52, 0.66))
 #: What the origin of a rock sample is along: the axes of its array.
@@ -35,8 +38,8 @@ FLOAT, UINT, VERTICES, INDICES, TRIANGLES = 5126, 5125, 34962, 34963, 4
 
 
 def write_obj(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> None:
-    """Write Wavefront OBJ: an object a horizon, map coordinates to 1e-6 m, of small bodies finer, z upwards."""
-    lines, first = ["# metres, map coordinates, z upwards"], 1
+    """Write Wavefront OBJ: an object a horizon, coordinates to 1e-6 m, of small bodies finer, z upwards."""
+    lines, first = [f"# {COORDINATES}, z upwards"], 1
     digits = max(7 - _magnitude(_given(meshes, path)), 6)
     for name, mesh in meshes.items():
         lines.append(f"o {_word(name)}")
@@ -62,7 +65,7 @@ def write_ply(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> None:
     head = [
         "ply",
         "format binary_little_endian 1.0",
-        "comment metres, map coordinates",
+        f"comment {COORDINATES}",
         *comments,
         f"element vertex {first}",
         *(f"property double {axis}" for axis in "xyz"),

@@ -146,3 +146,38 @@ def test_the_journal_gets_the_file_and_its_hash(tmp_path):
     journal = Journal()
     survey(tmp_path, ["A B 1 0 0 1 1 1 1"], journal=journal)
     assert set(journal.inputs) == {"cave.dat"}
+
+
+@pytest.mark.parametrize(
+    ("declination", "more", "words", "what"),
+    [
+        ("8,50", "CORRECTIONS: 0 0 0", "DECLINATION", "directions"),
+        ("east", "CORRECTIONS: 0 0 0", "DECLINATION", "directions"),
+        ("8.5", "CORRECTIONS: 2,00 0 0,5", "CORRECTIONS", "lengths and directions"),
+        ("", "CORRECTIONS: x", "DECLINATION, CORRECTIONS", "lengths and directions"),
+    ],
+)
+def test_shots_without_a_correction_that_cannot_be_read_are_counted(tmp_path, declination, more, words, what):
+    """A declination of 8,50 had been read as 8, one of other text as 0, without a word."""
+    found = survey(tmp_path, ["A B 10.0 80.0 5.0 1 2 3 4", "B C 10.0 80.0 5.0 1 2 3 4"], declination, more=more)
+    (warning,) = [issue for issue in found.issues if issue.reason.code == "io.shots-uncorrected"]
+    assert (warning.severity, warning.row) == ("warning", 6)
+    params = warning.reason.params
+    assert (params["count"], params["word"], str(params["what"])) == (2, words, what)
+
+
+def test_a_survey_without_its_header_does_not_take_that_of_another(tmp_path):
+    path = tmp_path / "two.dat"
+    shot = "{} {} 10.0 90.0 0.0 1 1 1 1\n"
+    second = f"\f\n{HEAD}{TITLES}{shot.format('B', 'C')}"
+    path.write_text(f"{HEAD}DECLINATION: 90.00  FORMAT: DDDDUDLRLADN\n{TITLES}{shot.format('A', 'B')}{second}")
+    found = read_compass(path)
+    np.testing.assert_allclose(found.offset[1] / 0.3048, [10, 0, 0], atol=1e-9)
+    (warning,) = [issue for issue in found.issues if issue.reason.code == "io.shots-uncorrected"]
+    assert warning.reason.params["count"] == 1
+
+
+def test_numbers_of_the_header_may_end_in_a_point_or_stand_before_a_word(tmp_path):
+    found = survey(tmp_path, ["A B 10.0 80.0 5.0 1 2 3 4"], "8.", more="CORRECTIONS: 2. -5. .5 DISCOVERY: 1 2 79")
+    np.testing.assert_allclose(found.offset, [[10.5 * 0.3048, 0, 0]], atol=1e-12)
+    assert not found.issues

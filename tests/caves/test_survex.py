@@ -274,3 +274,43 @@ def test_lengths_in_messages_are_metres_in_groups(svx, line, text):
 def test_walls_in_messages_are_metres_in_groups(svx, wall, text):
     (issue,) = svx(f"1 2 10 0 0\n*data passage station left right up down\n1 {wall} 1 1 1\n2 1 1 1 1\n").issues
     assert str(issue.reason).replace("\N{NO-BREAK SPACE}", " ") == f"A wall is {text} away; 0 to 10 000 m are possible"
+
+
+@pytest.mark.parametrize(
+    ("command", "what"),
+    [
+        ("*declination auto 36 12 800", "directions"),
+        ("*declination 10", "directions"),
+        ("*declination 4,5 degrees", "directions"),
+        ("*calibrate compass x", "directions"),
+        ("*calibrate tape", "lengths"),
+        ("*calibrate tape compass", "lengths and directions"),
+        ("*calibrate moon 3", "lengths and directions"),
+    ],
+)
+def test_shots_without_a_correction_that_cannot_be_read_are_counted(svx, command, what):
+    """A cave that is turned by 10 degrees must not pass for one that is not."""
+    found = svx(f"1 2 10 86 0\n*begin\n{command}\n2 3 10 0 0\n3 4 10 0 0\n*end\n4 5 10 0 0\n")
+    (warning,) = [issue for issue in found.issues if issue.reason.code == "io.shots-uncorrected"]
+    assert (warning.severity, warning.row, warning.value) == ("warning", 3, command)
+    assert (warning.reason.params["count"], str(warning.reason.params["what"])) == (2, what)
+    assert warning.remedy
+
+
+def test_a_correction_that_is_stated_anew_is_read(svx):
+    found = svx("*declination auto 1 2 3\n*declination 4 degrees\n*calibrate moon 3\n*calibrate default\n1 2 10 86 0\n")
+    assert not [issue for issue in found.issues if issue.reason.code == "io.shots-uncorrected"]
+
+
+def test_decimal_commas_are_not_taken_for_other_readings(svx):
+    """Survex takes a comma for a blank: 10,5 90,0 0,5 was read as 10 m along 5 degrees, straight up."""
+    found = svx("1 2 10 90 0\n2 3 10,5 90,0 0,5\n")
+    (issue,) = found.issues
+    assert (len(found.start), issue.severity, issue.row) == (1, "error", 2)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "cp1252"])
+def test_surveys_in_other_encodings(tmp_path, encoding):
+    path = tmp_path / "a.svx"
+    path.write_bytes("*begin höhle\n1 2 10 90 0\n*end höhle\n".encode(encoding))
+    assert read_survex(path).stations == ("höhle.1", "höhle.2")

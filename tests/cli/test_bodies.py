@@ -421,3 +421,31 @@ def test_what_is_printed_and_what_is_written_follow_the_published_schema(drilled
         assert {key: printed[key] for key in written} == written
         written["unknown"] = 1
         assert not validator.is_valid(written)
+
+
+def test_cave_states_that_its_directions_and_lengths_are_uncorrected(tmp_path, monkeypatch, capsys):
+    (tmp_path / "turned.svx").write_text(
+        "*declination auto 36 12 800\n*calibrate tape 0,3\n*data normal from to tape compass clino\na b 10 86 0\n"
+        "b c 10 86 0\n",
+        encoding="utf-8",
+    )
+    options = ("--radius", "1", "--spacing", "0.5", "--out", tmp_path / "o")
+    code, out, err = run(monkeypatch, capsys, "cave", tmp_path / "turned.svx", *options, "--json")
+    assert code == 0, err
+    words = "2 shots are used without the correction by *declination: their directions are as measured"
+    assert f"warning: {words}" in err.splitlines()
+    assert [(one["code"], one["severity"], one["params"]["count"]) for one in json.loads(out)["uncorrected"]] == [
+        ("io.shots-uncorrected", "warning", 2)
+    ] * 2
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_a_throat_without_a_wall_divides_by_nothing(tmp_path, monkeypatch, capsys):
+    """A slit through the whole sample has a face that no rock bounds; the name chooses one array of two."""
+    rock = np.zeros((6, 6, 6), np.uint8)
+    rock[2:4] = 1
+    np.savez(tmp_path / "two.npz", before=np.ones_like(rock), after=rock)
+    options = ("--pore", "0", "--voxel", "1e-6", "--name", "after", "--json", "--out", tmp_path / "o")
+    code, out, err = run(monkeypatch, capsys, "pores", tmp_path / "two.npz", *options)
+    assert code == 0, err
+    assert json.loads(out)["porosity"] == pytest.approx(2 / 3)

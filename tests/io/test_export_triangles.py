@@ -318,3 +318,17 @@ def test_the_same_meshes_give_the_same_bytes(write, meshes, tmp_path):
     files = [sorted(p for p in (tmp_path / folder).rglob("*") if p.is_file()) for folder in ("one", "two")]
     assert [p.read_bytes() for p in files[0]] == [p.read_bytes() for p in files[1]]
     assert not [p for p in files[0] if ".part" in p.name]
+
+
+@pytest.mark.parametrize("origin", [(0.0, 0.0, 0.0), (4_500_000.0, 3_100_000.0, 100.0)])
+def test_obj_and_ply_state_what_is_true_of_every_origin(origin, tmp_path):
+    """A survey about its first station, or a body read about a local zero, is not in map coordinates."""
+    place = np.array([[0.0, 0, 0], [100, 0, 0], [0, 100, 5]])
+    mesh = Mesh(place, np.array([[0, 1, 2]]), np.zeros(1, int), np.zeros((1, 3, 2)), np.array(origin), ("a",))
+    triangles.write_obj({"a": mesh}, tmp_path / "a.obj")
+    triangles.write_ply({"a": mesh}, tmp_path / "a.ply")
+    for name in ("a.obj", "a.ply"):
+        head = (tmp_path / name).read_bytes()[:300].decode("latin-1")
+        assert "map coordinates" not in head
+        assert "coordinates as in the data, no offset" in head
+    assert read_obj(tmp_path / "a.obj").vertices.min(axis=0).tolist() == list(origin)

@@ -276,3 +276,72 @@ def test_the_read_back_of_an_unfitted_surface_has_no_points(tmp_path):
     assert checks["read-back core"].passed is None
     assert checks["read-back seam angle"].passed is None
     assert checks["read-back validity"].passed
+
+
+HEAD = "GOCAD TSurf 1\nHEADER {\nname:T1\n}\n"
+TRIANGLE = "TFACE\nVRTX 1 0 0 10\nVRTX 2 100 0 20\nVRTX 3 0 100 30\nTRGL 1 2 3\nEND\n"
+
+
+def test_a_brep_of_surfaces_of_one_face_keeps_them_apart(tmp_path):
+    """Three horizons came back as one surface, whose elevations were those of the first."""
+    upper, lower = horizon([height_field()]), horizon([height_field()])
+    lower = lower.with_(origin=lower.origin - np.array([0.0, 0.0, 50.0]))
+    write_brep({"upper": upper, "lower": lower}, tmp_path / "a.brep")
+    one, two = read_surfaces(tmp_path / "a.brep").values()
+    assert_allclose(two.origin - one.origin, [0, 0, -50], atol=1e-9)
+    assert [len(one.patches), len(two.patches)] == [1, 1]
+
+
+@pytest.mark.parametrize("name", ["a.step", "a.igs", "a.brep", "a.ts"])
+def test_a_folder_is_not_called_a_missing_file(name, tmp_path):
+    (tmp_path / name).mkdir()
+    with pytest.raises(InputError) as told:
+        read_surfaces(tmp_path / name)
+    assert told.value.code in ("cad.path-is-folder", "io.file-not-opened")
+
+
+@pytest.mark.parametrize(
+    ("units", "factors"),
+    [('"m" "m" "m"', (1, 1, 1)), ('" m " " m " " ft "', (1, 1, 0.3048)), ("ft ft ft", (0.3048,) * 3)],
+)
+def test_units_of_a_tsurf_may_have_blanks(units, factors, tmp_path):
+    """As points, such a file had counted its elevations by the unit of another axis, or none."""
+    from geofit.io import read_points
+
+    (tmp_path / "a.ts").write_text(HEAD + f"AXIS_UNIT {units}\n" + TRIANGLE)
+    (surface,) = read_surfaces(tmp_path / "a.ts").values()
+    places = np.array([[0, 0, 10], [100, 0, 20], [0, 100, 30]]) * factors
+    assert_allclose(surface.mesh.xyz, places)
+    (points,) = read_points(tmp_path / "a.ts").horizons.values()
+    assert_allclose(points.xyz, places)
+
+
+@pytest.mark.parametrize(
+    "head", ["HEADER {name:Top T1}\n", "HEADER {\nname: Top T1 \n}\n", 'HEADER{\n*name:x\nname:"Top T1"\n}\n']
+)
+def test_a_tsurf_has_its_name_in_each_form_of_the_header(head, tmp_path):
+    from geofit.io import read_points
+
+    (tmp_path / "a.ts").write_text("GOCAD TSurf 1\n" + head + TRIANGLE)
+    assert list(read_surfaces(tmp_path / "a.ts")) == list(read_points(tmp_path / "a.ts").horizons) == ["Top T1"]
+
+
+def test_a_mark_for_no_data_is_no_elevation(tmp_path):
+    """Of depths, -99999 became an elevation of +99,999 m; of a surface, a vertex at -99,999 m."""
+    from geofit.io import read_points
+
+    rows = "VRTX 1 0 0 10\nVRTX 2 100 0 20\nVRTX 3 0 100 30\nVRTX 4 100 100 -99999\nVRTX 5 9 9 1e30\n"
+    (tmp_path / "a.vs").write_text(f"GOCAD VSet 1\nHEADER {{\nname:T1\n}}\nZPOSITIVE Depth\n{rows}END\n")
+    (points,) = read_points(tmp_path / "a.vs").horizons.values()
+    assert sorted(points.xyz[:, 2]) == [-30, -20, -10]
+    (tmp_path / "a.ts").write_text(f"{HEAD}TFACE\n{rows}TRGL 1 2 3\nTRGL 2 3 4\nEND\n")
+    with pytest.raises(InputError) as told:
+        read_surfaces(tmp_path / "a.ts")
+    assert (told.value.code, told.value.row) == ("io.vertex-without-elevation", 9)
+
+
+def test_a_tsurf_without_its_end_is_refused(tmp_path):
+    (tmp_path / "a.ts").write_text(HEAD + TRIANGLE.replace("END\n", ""))
+    with pytest.raises(InputError) as told:
+        read_surfaces(tmp_path / "a.ts")
+    assert told.value.code == "io.tsurf-without-end"

@@ -189,3 +189,26 @@ def test_a_row_of_units_may_name_that_of_angles(tmp_path):
 
 def test_marks_that_are_no_unit_of_length():
     assert [unit_marked(mark) for mark in ("deg", "", "-", "kg", "ratio", "%")] == [None] * 6
+
+
+@pytest.mark.parametrize("crs", [None, "EPSG:31468"])
+def test_a_raster_that_states_feet_of_elevation_is_in_metres_whatever_its_system(crs, tmp_path):
+    """Without a coordinate system the mark was ignored; with one, the note called it the unit of the system."""
+    rasterio = pytest.importorskip("rasterio", reason="rasters need the extra gis")
+    from geofit.io import Source
+    from geofit.io.grid import load_ground
+    from geofit.io.journal import Journal
+
+    place = rasterio.Affine(100, 0, 4_500_000, 0, -100, 3_100_300)
+    with rasterio.open(
+        tmp_path / "a.tif", "w", driver="GTiff", height=2, width=2, count=1, dtype="float64", crs=crs, transform=place
+    ) as raster:
+        raster.write(np.full((2, 2), 1000.0), 1)
+        raster.units = ("ft",)
+    journal = Journal()
+    ground = load_ground(Source(path=tmp_path / "a.tif"), journal)
+    assert ground.z == pytest.approx(np.full((2, 2), 304.8))
+    assert ground.x[0] == 4_500_050
+    codes = [issue.reason.code for issue in journal.issues]
+    assert "io.band-unit-converted" in codes
+    assert "io.crs-unit-converted" not in codes

@@ -195,3 +195,16 @@ def test_the_command_writes_the_report_in_both_languages(blunder, tmp_path, code
 def test_the_same_run_gives_the_same_report(blunder, tmp_path):
     first, second = (write_cave_report(blunder, tmp_path / name, EN, date="2026-01-02")[0] for name in "ab")
     assert first.read_bytes() == second.read_bytes()
+
+
+def test_shots_without_a_correction_are_named_above_the_drawings(tmp_path):
+    """A cave that is turned by its declination must not look like one that is not."""
+    path = tmp_path / "turned.svx"
+    path.write_text("*declination auto 36 12 800\n1 2 10 86 0\n2 3 10 86 0\n", encoding="utf-8")
+    run = measure_passages(read_survex(path), radius=1.0, spacing=0.5)
+    chapter = cave_chapter(found(run, uncorrected=run.uncorrected), EN)
+    facts, warning = chapter.blocks[:2]
+    assert isinstance(facts, Facts)
+    assert isinstance(warning, Paragraph)
+    assert warning.style == "warning"
+    assert warning.text.startswith("2 shots are used without the correction by *declination: their directions")
