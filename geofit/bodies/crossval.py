@@ -328,9 +328,14 @@ def _kriged(data: BodyData, names: tuple[str, ...]) -> dict[str, Floats]:
     return {name: 0.5 - estimate[group] for name, group in zip(names, groups, strict=True)}
 
 
-def left_out_body(body: BodyFit) -> LeftOutBody | None:
-    """Return what the verdict takes from leaving holes out; None where the data are of too few holes for that."""
+def left_out_body(body: BodyFit, workers: int | None = 1) -> LeftOutBody | None:
+    """Return what the verdict takes from leaving holes out; None where the data are of too few holes for that.
+
+    ``workers`` are the processes for a body with more than 1500 conditions, as in :func:`leave_one_hole_out`; the holes
+    of a smaller one take less time than a process takes to start.
+    """
+    workers = workers if body.fitted.conditions > LARGE else 1
     try:
-        return leave_one_hole_out(body, compared=False).left_out
+        return leave_one_hole_out(body, compared=False, workers=workers).left_out
     except FitError:
         return None

@@ -74,7 +74,9 @@ def body(
     from geofit.bodies.settings import BodySettings
     from geofit.io.boreholes import Boreholes
     from geofit.project.body_run import run_body
+    from geofit.project.side_by_side import available
 
+    hands = available()
     settings, zero = BodySettings(epsilon=epsilon), read_origin(origin)
     title, page = None, lang.value if certificate else ""
     with listening() as progress:
@@ -83,7 +85,9 @@ def body(
             list_issues(drawn.issues, out)
             name = _name(source, layer or [])
             signed = signed_by(None, author, organisation, zero, certificate=page)
-            run = run_body(drawn.data, out, name=name, settings=settings, progress=progress, signed=signed)
+            run = run_body(
+                drawn.data, out, name=name, settings=settings, progress=progress, signed=signed, workers=hands
+            )
         else:
             holes = _read(source, survey, intervals or [], unit)
             list_issues(holes.issues, out)
@@ -93,7 +97,7 @@ def body(
             title = getattr(holes, "title", None)
             site = None if isinstance(holes, Boreholes) else holes
             signed = signed_by(site, author, organisation, zero, certificate=page)
-            run = run_body(holes, out, codes=code, settings=settings, progress=progress, signed=signed)
+            run = run_body(holes, out, codes=code, settings=settings, progress=progress, signed=signed, workers=hands)
         if report:
             from geofit.data.languages import language
             from geofit.project.single_reports import write_body_report

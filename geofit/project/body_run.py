@@ -101,6 +101,7 @@ def run_body(
     progress: Progress | None = None,
     signed: Signed | None = None,
     stem: str = "",
+    workers: int | None = 1,
 ) -> BodyRun:
     """Fit a body, examine it, and write ``NAME.step``, ``.stl``, ``.vtp``, ``.json`` and ``NAME_contacts.csv``.
 
@@ -116,6 +117,8 @@ def run_body(
         What the STEP file states, and whether it gets a certificate.
     stem : str
         Name of the files without ending; empty: from the body's name.
+    workers : int, optional
+        Processes that leave holes out of a large body, see :func:`geofit.bodies.crossval.left_out_body`.
 
     Raises
     ------
@@ -133,7 +136,7 @@ def run_body(
     tell(progress, "volumes", 0.3)
     volumes = body.volumes()
     tell(progress, "holes left out", 0.5)
-    left_out = left_out_body(body)
+    left_out = left_out_body(body, workers)
     tell(progress, "STEP", 0.6)
     step, contacts = path.with_name(f"{path.name}.step"), path.with_name(f"{path.name}_contacts.csv")
     stated = (signed or Signed()).about([body.extent[0] + body.origin])

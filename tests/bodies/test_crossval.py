@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bodies.planted import ORIGIN, drilled, ellipsoid
+from geofit.bodies import crossval
 from geofit.bodies.body import BodyFit
 from geofit.bodies.crossval import leave_one_hole_out, left_out_body
 from geofit.bodies.data import BodyData
@@ -14,6 +15,7 @@ from geofit.bodies.outlines import Outline, from_outlines
 from geofit.bodies.posterior import BodyPosterior
 from geofit.bodies.simulate import simulate
 from geofit.data.errors import FitError
+from geofit.streaming import executors
 from geofit.streaming.executors import Where
 
 
@@ -58,10 +60,16 @@ def test_data_without_names() -> None:
         leave_one_hole_out(fit_body(drilled(ellipsoid((0.6, 0.4, 0.3))[0], 0)))
 
 
-def test_holes_left_out_and_simulations_on_two_processes(ring: BodyFit) -> None:
+def test_holes_left_out_and_simulations_on_two_processes(ring: BodyFit, monkeypatch: pytest.MonkeyPatch) -> None:
     one, two = (leave_one_hole_out(ring, 4, workers=n) for n in (1, 2))
     assert one == two
     assert one.methods["body"].holes
+    monkeypatch.setattr(crossval, "LARGE", 20)
+    started: list[int] = []
+    run = executors.run_tasks
+    monkeypatch.setattr(executors, "run_tasks", lambda *given: started.append(given[3]) or run(*given))
+    assert left_out_body(ring, 2) == left_out_body(ring)
+    assert started == [2, 1]
     alone, apart = simulate(ring), simulate(ring, Where("local", 2))
     assert alone.values == pytest.approx(apart.values, rel=1e-9)
 
