@@ -208,20 +208,20 @@ def _area(surface: FittedSurface) -> Check:
     if off <= UNCOVERED:
         text = message(
             "checks.area-covered",
-            "the surface covers {covered:.0f} of the study area's {wanted:.0f} square metres",
+            "the surface covers {covered:whole} of the study area's {wanted:whole} square metres",
             **figures,
         )
     elif covered < wanted:
         text = message(
             "checks.area-not-covered",
-            "the surface covers only {covered:.0f} of the study area's {wanted:.0f} square metres: {off:.1f} % of it "
+            "the surface covers only {covered:whole} of the study area's {wanted:whole} square metres: {off:.1f} % of it "
             "have no surface",
             **figures,
         )
     else:
         text = message(
             "checks.patches-overlap",
-            "the patches cover {covered:.0f} square metres of a study area of {wanted:.0f}: they overlap",
+            "the patches cover {covered:whole} square metres of a study area of {wanted:whole}: they overlap",
             **figures,
         )
     return Check("area", off <= UNCOVERED, off, UNCOVERED, "%", text)

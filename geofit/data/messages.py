@@ -170,10 +170,10 @@ def render(value: Any, catalogue: NullTranslations) -> Any:
         fields = {name: _counted(name, render(param, catalogue)) for name, param in value.params.items()}
         if not fields:
             return template
-        if _LENGTH not in template:
+        if not any(own in template for own in _OWN_FORMATS):
             with suppress(OverflowError, TypeError, ValueError):
                 return template.format(**fields)
-        return _WITH_LENGTHS.vformat(template, (), fields)
+        return _FORMATTER.vformat(template, (), fields)
     if isinstance(value, tuple) and value and all(isinstance(item, (Message, str)) for item in value):
         return _joined([str(render(item, catalogue)) for item in value], catalogue)
     if isinstance(value, str):
@@ -204,9 +204,11 @@ class _Counted(int):
         return text if spec else in_groups(text)
 
 
-class _WithLengths(Formatter):
-    """``str.format`` that knows one more format: ``{sigma:length}``, digits as :func:`rounded_metres` chooses them.
+class _Formatter(Formatter):
+    """``str.format`` that knows two more formats.
 
+    ``{sigma:length}`` has the digits that :func:`rounded_metres` chooses, ``{area:whole}`` none after the point, in
+    groups.
     What a format does not fit (a word where a number was due) is shown as it was given.
     """
 
@@ -214,13 +216,15 @@ class _WithLengths(Formatter):
         if format_spec == "length":
             return rounded_metres(value)
         try:
+            if format_spec == "whole":
+                return in_groups(str(super().format_field(value, ".0f")))
             return str(super().format_field(value, format_spec))
         except (OverflowError, TypeError, ValueError):
             return folded(repr(value))
 
 
-_LENGTH = ":length}"
-_WITH_LENGTHS = _WithLengths()
+_OWN_FORMATS = (":length}", ":whole}")
+_FORMATTER = _Formatter()
 
 
 def _joined(texts: list[str], catalogue: NullTranslations) -> str:

@@ -65,19 +65,19 @@ class Order:
         if self.disputed > DISPUTED * self.volume:
             figures["disputed"] = message(
                 "site.layer-disputed",
-                "; {volume:.0f} m3 of it lie above or below another horizon of the order, which crosses them",
+                "; {volume:whole} m3 of it lie above or below another horizon of the order, which crosses them",
                 volume=self.disputed,
             )
         if self.grounded:
             return message(
                 "site.layer-below-ground",
-                "; between them, below the ground, {volume:.0f} m3 over {present:.0f} m2 where it is thicker than "
+                "; between them, below the ground, {volume:whole} m3 over {present:whole} m2 where it is thicker than "
                 "{least:g} m{disputed}",
                 **figures,
             )
         return message(
             "site.layer-between",
-            "; between them {volume:.0f} m3 over {present:.0f} m2 where it is thicker than {least:g} m{disputed}",
+            "; between them {volume:whole} m3 over {present:whole} m2 where it is thicker than {least:g} m{disputed}",
             **figures,
         )
 
@@ -123,14 +123,14 @@ class Order:
         if not below:
             text = message(
                 "site.horizons-cross-above-ground",
-                "{upper} lies below {lower} above the ground only (places: {count}): {area:.0f} m2, {volume:.0f} m3"
+                "{upper} lies below {lower} above the ground only (places: {count}): {area:whole} m2, {volume:whole} m3"
                 "{layer}",
                 **figures,
             )
             return Check("order", True, 0.0, 0.0, "m", text)
         text = message(
             "site.horizons-cross",
-            "{upper} lies below {lower} (places: {count}): {area:.0f} m2, {volume:.0f} m3, deepest {depth:.2f} m "
+            "{upper} lies below {lower} (places: {count}): {area:whole} m2, {volume:whole} m3, deepest {depth:.2f} m "
             "at ({x:.1f}, {y:.1f}){layer}",
             **figures,
         )

@@ -68,7 +68,7 @@ def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -
         text = message(
             "site.horizon-above-ground",
             "the horizon lies above the ground: by {value:.1f} m at {x:.0f}, {y:.0f}, where its "
-            "own points constrain it; {points} points and {area:.0f} square metres in all are more "
+            "own points constrain it; {points} points and {area:whole} square metres in all are more "
             "than {tolerance:g} m above it",
             value=value,
             x=plan[worst[0], 0],
@@ -83,7 +83,7 @@ def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -
         text = message(
             "site.horizon-above-ground-away",
             "away from its points the horizon continues above the ground, up to {value:.1f} m over "
-            "{area:.0f} square metres: it is eroded there, or no point constrains it",
+            "{area:whole} square metres: it is eroded there, or no point constrains it",
             value=highest,
             **area,
         )

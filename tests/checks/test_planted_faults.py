@@ -374,7 +374,7 @@ def test_rock_that_is_eroded_is_told_and_no_fault():
     assert found.passed is None
     assert found.value == pytest.approx(100.0, abs=2.0)
     over = (100 - 200 * np.exp(-((np.linspace(-500, 500, 2001) / 150) ** 2)) < -1).mean() * 7e5
-    area = float(str(found.text).split("over ")[1].split()[0])
+    area = found.text.params["area"]
     assert area == pytest.approx(over, rel=0.1)
     buried = check_ground(horizon([level], points), Ground(x, y, np.full_like(valley, ORIGIN[2] + 50)), 1.0)
     assert buried.passed

@@ -129,7 +129,7 @@ def test_a_horizon_that_fails_leaves_the_others_of_the_run(tmp_path, monkeypatch
 def test_an_order_that_fails_is_reported(tmp_path, monkeypatch):
     site = geofit.Site("two", {"top": cloud(), "base": cloud(seed=1)})
     site = replace(site, order=("top", "base"))
-    monkeypatch.setattr("geofit.site.fit_site.compare_horizons", broken)
+    monkeypatch.setattr("geofit.site.fit_site.compare_pairs", broken)
     done = run_horizons(site, tmp_path)
     assert len(done.results) == 2
     (note,) = [note for note in done.warnings if note.code == "project.order-not-examined"]

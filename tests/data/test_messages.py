@@ -20,6 +20,13 @@ def test_a_length_in_a_sentence_has_the_digits_of_the_tables():
     assert texts == ["132.973 m of 3", "0.0301 m of 3", "3.21e-5 m of 3", "5970.100 m of 3"]
 
 
+def test_areas_and_volumes_have_whole_numbers_in_groups():
+    text = str(
+        message("test.whole", "{volume:whole} m3, {area:whole} m2, {d:whole}", volume=178160401.4, area=9.6, d=-15000.0)
+    )
+    assert text.replace("\u202f", " ").replace("\xa0", " ").replace("\u2009", " ") == "178 160 401 m3, 10 m2, −15 000"
+
+
 def test_formatted_numbers_have_a_minus_sign_and_given_ones_stay_as_they_are():
     found = message("x.y-z", "{a:.2f} {b:length} {c:.1g} {d} {e}", a=-0.14, b=-4.2, c=-1e-7, d=-3.5, e="T3-T2")
     assert str(found) == "−0.14 −4.200 −1e-07 -3.5 T3-T2"
