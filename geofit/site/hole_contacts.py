@@ -80,7 +80,7 @@ def check_holes(surface: HorizonFit, site: Site, horizon: str = "") -> Check | N
     ]
     if not passed:
         text = message("site.holes-have-contacts", "each hole that passes the surface has a contact of the horizon")
-        return Check(CONTACTS, True, 0.0, 0.0, "holes", text)
+        return Check(CONTACTS, True, 0.0, 0.0, "1", text)
     wrong = [one for one in passed if not one.covered]
     named = sorted(wrong or passed, key=lambda one: -one.far)
     figures = {
@@ -104,7 +104,7 @@ def check_holes(surface: HorizonFit, site: Site, horizon: str = "") -> Check | N
             "horizon: {count} of {total} ({names}); it is eroded there or has pinched out",
             **figures,
         )
-    return Check(CONTACTS, False if wrong else None, float(len(named)), 0.0, "holes", text,
+    return Check(CONTACTS, False if wrong else None, float(len(named)), 0.0, "1", text,
                  tuple(one.place for one in named[:LISTED]))  # fmt: skip
 
 
