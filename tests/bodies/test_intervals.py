@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -135,6 +136,27 @@ def test_a_thin_interval_between_two_stretches_is_not_taken_for_a_crossing(thin:
     accuracy = fit_body(data).accuracy
     assert accuracy is not None
     assert (accuracy.extra_crossings, accuracy.missed_length, accuracy.excess_length) == (0, 0.0, 0.0)
+
+
+def test_a_stretch_without_a_sample_parts_those_on_either_side_of_it() -> None:
+    """Of samples at even distances none need lie in a thin interval: what is around it says nothing of its inside."""
+    depth = np.array([2.0, 6, 10, 14, 18, 22, 26])
+    path = Vertical(0.0)
+    inside = np.isin(depth, [10, 14, 18])
+    data = BodyData(
+        path.at(np.array([8.0, 11.5, 12.5, 20.0])),
+        path.at(depth[inside]),
+        path.at(depth[~inside]),
+        hole=["A"] * 4,
+        inside_hole=["A"] * 3,
+        outside_hole=["A"] * 4,
+        inside_length=np.full(3, 4.0),
+        outside_length=np.full(4, 4.0),
+    )
+    places = between_samples(data, inside=True)[0]
+    np.testing.assert_allclose(-places[:, 2], [15, 16, 17])
+    other = replace(data, hole=np.array(["A", "B", "B", "A"]))
+    np.testing.assert_allclose(-between_samples(other, inside=True)[0][:, 2], [11, 12, 13, 15, 16, 17])
 
 
 @pytest.mark.parametrize("dense", [600, 60])

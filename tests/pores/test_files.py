@@ -90,7 +90,7 @@ def test_unclear_files_are_errors_with_a_remedy(tmp_path):
     with pytest.raises(VolumeError, match="metres"):
         read_volume(path, pore=1)
     (tmp_path / "a.raw").write_bytes(bytes(7))
-    with pytest.raises(InputError, match=r"shape=\(n0"):
+    with pytest.raises(InputError, match=r"--shape 200,200,100, in Python shape"):
         read_volume(tmp_path / "a.raw", pore=1, voxel=1e-6)
     with pytest.raises(InputError, match="bytes"):
         read_volume(tmp_path / "a.raw", pore=1, voxel=1e-6, shape=(2, 2, 2))
