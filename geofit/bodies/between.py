@@ -37,13 +37,13 @@ def between_samples(data: BodyData, *, inside: bool) -> tuple[Floats, Floats, ND
     # or its samples have another length.
     alike = np.isclose(length[1:], length[:-1], rtol=ALIKE) & (gap <= (1 + ALIKE) * length[1:])
     pair = np.flatnonzero((hole[1:] == hole[:-1]) & (hole[1:] != "") & alike)
-    pair = pair[~_parted(data, (xyz[pair] + xyz[pair + 1]) / 2, gap[pair] / 2, hole[pair])]
+    pair = pair[~_split(data, (xyz[pair] + xyz[pair + 1]) / 2, gap[pair] / 2, hole[pair])]
     share = np.arange(1, INNER + 1)[:, None] / (INNER + 1)
     places = xyz[pair, None] + share * (xyz[pair + 1] - xyz[pair])[:, None]
     return places.reshape(-1, 3), np.repeat(gap[pair] / (INNER + 1), INNER), np.repeat(pair, INNER)
 
 
-def _parted(data: BodyData, middle: Floats, half: Floats, hole: NDArray[np.str_]) -> NDArray[np.bool_]:
+def _split(data: BodyData, middle: Floats, half: Floats, hole: NDArray[np.str_]) -> NDArray[np.bool_]:
     """Return whether a contact of the hole lies between two samples (k,): a stretch too short for a sample is there."""
     from scipy.spatial import cKDTree
 

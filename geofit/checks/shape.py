@@ -214,8 +214,8 @@ def _area(surface: FittedSurface) -> Check:
     elif covered < wanted:
         text = message(
             "checks.area-not-covered",
-            "the surface covers only {covered:whole} of the study area's {wanted:whole} square metres: {off:.1f} % of it "
-            "have no surface",
+            "the surface covers only {covered:whole} of the study area's {wanted:whole} square metres: {off:.1f} % of "
+            "it have no surface",
             **figures,
         )
     else:
