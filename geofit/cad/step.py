@@ -25,7 +25,7 @@ from geofit.cad.foreign import read_in_child
 from geofit.cad.imported import FileShape, empty_document, existing, no_faces, products, quiet, surface_of
 from geofit.cad.read_back import read_back
 from geofit.cad.sewing import shell
-from geofit.cad.step_attributes import attributes_of, with_attributes
+from geofit.cad.step_attributes import CONTINUED, attributes_of, with_attributes
 from geofit.cad.step_origin import Origin, offset_attributes, offset_of, offset_words
 from geofit.cad.step_text import canonical, read_written
 from geofit.data.accuracy import ReadBack
@@ -202,10 +202,13 @@ def read_step(path: str | PathLike[str]) -> dict[str, PatchSurface]:
 def step_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     """Read a STEP file in this process, which a damaged file may end; see :func:`read_step`.
 
-    Loops in geofit's own files are the outline of a fit, whose patches go on beneath it: points outside are measured
-    to them, as in the fit. What lies beneath the loops of a foreign face is not known.
+    What lies beneath the loops of a face is known only where the file states that a fit continues there: then points
+    outside are measured as in the fit.
     """
-    return {shape.name: surface_of(shape, whole="geofit_version" in shape.attributes) for shape in read_shapes(path)}
+    return {
+        shape.name: surface_of(shape, whole=shape.attributes.get("beyond_loops") == CONTINUED)
+        for shape in read_shapes(path)
+    }
 
 
 def read_shapes(path: str | PathLike[str]) -> list[FileShape]:

@@ -24,10 +24,20 @@ if TYPE_CHECKING:
     from geofit.bodies.accuracy import BodyAccuracy
     from geofit.bodies.implicit_body import ImplicitBody
 
-__all__ = ["KEYS", "attributes_at", "attributes_of", "attributes_of_body", "places_hash", "with_attributes"]
+__all__ = [
+    "CONTINUED",
+    "KEYS",
+    "attributes_at",
+    "attributes_of",
+    "attributes_of_body",
+    "places_hash",
+    "with_attributes",
+]
 
 #: Names of the attributes, in the order of the file.
-KEYS = ("sigma_m", "epsilon_m", "largest_residual_m", "points", "data_sha256", "geofit_version")
+KEYS = ("sigma_m", "epsilon_m", "largest_residual_m", "points", "data_sha256", "geofit_version", "beyond_loops")
+#: What ``beyond_loops`` states of a fit that ends at an outline: its patches continue beneath the loops of the faces.
+CONTINUED = "continued"
 
 _ATTRIBUTE = """\
 #{0} = GENERAL_PROPERTY('user defined attribute','{key}','');
@@ -43,6 +53,8 @@ _LINES = 6
 def attributes_of(surface: FittedSurface) -> dict[str, str]:
     """Return the attributes of a fitted surface; without points or a check those of them are missing."""
     found, accuracy = {"geofit_version": __version__}, surface.accuracy
+    if surface.outline is not None and not any(surface.loops):
+        found["beyond_loops"] = CONTINUED
     if len(surface.points):
         found |= {"points": str(len(surface.points)), "data_sha256": places_hash(surface.points.xyz)}
     return _in_order(found, accuracy)

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 from geofit import FitSettings, PointSet, fit_horizon
-from geofit.cad.step import read_shapes, write_step
+from geofit.cad.imported import surface_of
+from geofit.cad.step import read_shapes, read_step, write_step
 from geofit.cad.step_attributes import KEYS, attributes_of, with_attributes
 from geofit.data.languages import EN
+from geofit.fitting.judge import judge
 from geofit.project.step_files import Signed, write_step_files
 from geofit.report.certificate import certificate
 from geofit.report.document import ReportTable
@@ -32,13 +34,41 @@ def surfaces():
     return {"T2": surface("T2", 1), "风化下限 'a'": surface("风化下限 'a'", 2, 0.25)}
 
 
+def test_only_a_fit_that_ends_at_an_outline_goes_on_beneath_its_loops(tmp_path):
+    """A foreign face that is trimmed stays so when it is written again: beneath its loops nothing is known."""
+    rng = np.random.default_rng(3)
+    xy = rng.uniform(0, 400, (80, 2))
+    points = PointSet(np.column_stack([xy, 5 * np.sin(xy[:, 0] / 60)]) + ORIGIN)
+    corners = [[0, 0], [400, 0], [400, 400], [260, 400], [200, 150], [140, 400], [0, 400]]
+    fit = fit_horizon(points, boundary=np.array(corners) + ORIGIN[:2], name="T")
+    write_step({"T": fit}, tmp_path / "fit.step")
+    (shape,) = read_shapes(tmp_path / "fit.step")
+    assert shape.attributes["beyond_loops"] == "continued"
+    (back,) = read_step(tmp_path / "fit.step").values()
+    assert back.outline is not None
+    assert not any(back.loops)
+    judged = judge(back, points)
+    assert judged.accuracy.sigma == pytest.approx(fit.accuracy.sigma, rel=1e-5, abs=1e-8)
+
+    foreign = surface_of(replace(shape, attributes={}))
+    assert any(foreign.loops)
+    cut = judge(foreign, points)
+    assert cut.accuracy.sigma > 100 * judged.accuracy.sigma
+    (found,) = write_step({"T": cut}, tmp_path / "again.step").values()
+    assert all(check.passed for check in found.checks if check.name == "read-back attributes")
+    (again,) = read_shapes(tmp_path / "again.step")
+    assert "beyond_loops" not in again.attributes
+    (back,) = read_step(tmp_path / "again.step").values()
+    assert judge(back, points).accuracy.sigma == pytest.approx(cut.accuracy.sigma, rel=1e-4)
+
+
 @pytest.mark.parametrize("unit", ["m", "mm"])
 def test_each_product_has_its_own_figures(surfaces, tmp_path, unit):
     found = write_step(surfaces, tmp_path / "dam.step", unit=unit)
     shapes = read_shapes(tmp_path / "dam.step")
     assert [shape.name for shape in shapes] == list(surfaces)
     for shape, (name, one) in zip(shapes, surfaces.items(), strict=True):
-        assert list(shape.attributes) == list(KEYS)
+        assert [*shape.attributes, "beyond_loops"] == list(KEYS)
         assert float(shape.attributes["sigma_m"]) == pytest.approx(one.accuracy.sigma, rel=1e-5)
         assert float(shape.attributes["epsilon_m"]) == one.settings.epsilon
         assert float(shape.attributes["largest_residual_m"]) == pytest.approx(one.accuracy.max_abs, rel=1e-5)
