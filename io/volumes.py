@@ -105,11 +105,7 @@ def read_voxels(
     """Return the values of a volume's voxels as stored, and the voxel edges in metres if the file states them."""
     path = Path(path)
     if not path.exists():
-        raise InputError(
-            message("io.no-such-file", "there is no such file or folder"),
-            message("data.check-path", "Check the path."),
-            file=str(path),
-        )
+        raise _missing(path)
     if not path.is_dir() and not is_file(path):
         raise InputError(
             message("io.not-a-file", "It is a pipe or a device, not a file"),
@@ -127,8 +123,18 @@ def read_voxels(
         raise damaged_volume(path) from None
 
 
+def _missing(path: Path) -> InputError:
+    return InputError(
+        message("io.no-such-file", "there is no such file or folder"),
+        message("data.check-path", "Check the path."),
+        file=str(path),
+    )
+
+
 def damaged_volume(path: Path) -> InputError:
     """Return the error for a volume that its library cannot read: what that reports is for programmers."""
+    if not path.exists():
+        return _missing(path)
     packed = path.suffix.lower() in (".gz", ".zip")
     if path.is_dir():
         what = message("io.folder-not-volume", "the folder holds no volume that can be read")
