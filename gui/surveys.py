@@ -68,7 +68,7 @@ class Surveys(QObject):
         self._activity.prepare(title, lambda: (passage_mesh, (run, self._free_file(run))), on_done=added)
 
     def _free_file(self, run: CaveRun) -> Path:
-        """Return a new file beside the site; a missing one that a body is made from is not taken either."""
+        """Return a new file next to the site, with a name that no body is made from, even if that file is missing."""
         name = Path(run.adjusted.survey.name).stem
         folder, stem = self._document.folder or Path.cwd(), f"{file_stems([name])[name]}_passages"
         site = self._document.site_folder or folder

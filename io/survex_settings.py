@@ -167,7 +167,7 @@ class Settings:
         return replace(self, unread=(*self.unread, unread))
 
     def with_correction(self, word: str, rest: list[str]) -> Settings:
-        """Return the settings after a correction; one that is stated anew is no longer unread."""
+        """Return the settings after a correction; it replaces an earlier one of its kind that could not be read."""
         if word == "declination":
             found = replace(self, declination=finite(rest[0]) * unit_of(rest[1])[1])
         else:

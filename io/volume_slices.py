@@ -17,7 +17,7 @@ from geofit.data.messages import message
 from geofit.io.volume_raw import map_meta_image, shape_and_type
 from geofit.io.volume_tiff import slice_files
 from geofit.io.volume_zarr import open_zarr
-from geofit.io.volumes import RAW, TIFF, damaged_volume, is_zarr
+from geofit.io.volumes import RAW, TIFF, damaged_volume, is_zarr, missing_volume
 from geofit.pores.sliced import SlicedVolume, Voxels
 
 __all__ = ["map_voxels", "open_volume", "sliceable"]
@@ -111,11 +111,7 @@ def open_volume(
     """
     path = Path(path)
     if not path.exists():
-        raise InputError(
-            message("io.no-such-file", "there is no such file or folder"),
-            message("data.check-path", "Check the path."),
-            file=str(path),
-        )
+        raise missing_volume(path)
     with _readable(path):
         values, stated = _voxels(path, shape, dtype, name)
         return SlicedVolume(values, pore=pore, voxel=stated if voxel is None else voxel)

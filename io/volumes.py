@@ -25,7 +25,7 @@ from geofit.io.volume_tiff import read_tiff, read_tiff_folder
 from geofit.pores.memory import check_memory
 from geofit.pores.volume import RockVolume, VolumeError
 
-__all__ = ["RAW", "TIFF", "damaged_volume", "is_zarr", "read_volume", "read_voxels"]
+__all__ = ["RAW", "TIFF", "damaged_volume", "is_zarr", "missing_volume", "read_volume", "read_voxels"]
 
 TIFF = (".tif", ".tiff")
 RAW = (".raw", ".bin", ".dat")
@@ -105,7 +105,7 @@ def read_voxels(
     """Return the values of a volume's voxels as stored, and the voxel edges in metres if the file states them."""
     path = Path(path)
     if not path.exists():
-        raise _missing(path)
+        raise missing_volume(path)
     if not path.is_dir() and not is_file(path):
         raise InputError(
             message("io.not-a-file", "It is a pipe or a device, not a file"),
@@ -123,9 +123,10 @@ def read_voxels(
         raise damaged_volume(path) from None
 
 
-def _missing(path: Path) -> InputError:
+def missing_volume(path: Path) -> InputError:
+    """Return the error for a volume that does not exist."""
     return InputError(
-        message("io.no-such-file", "there is no such file or folder"),
+        message("io.no-such-file", "the file or folder does not exist"),
         message("data.check-path", "Check the path."),
         file=str(path),
     )
@@ -134,7 +135,7 @@ def _missing(path: Path) -> InputError:
 def damaged_volume(path: Path) -> InputError:
     """Return the error for a volume that its library cannot read: what that reports is for programmers."""
     if not path.exists():
-        return _missing(path)
+        return missing_volume(path)
     packed = path.suffix.lower() in (".gz", ".zip")
     if path.is_dir():
         what = message("io.folder-not-volume", "the folder holds no volume that can be read")

@@ -45,8 +45,8 @@ class HoleScore:
     ``contact_errors`` are distances along the hole from each logged contact to the nearest one predicted, metres (on a
     section: at right angles to the surface); ``missed`` counts the contacts of a hole on which none is predicted.
     ``contacts`` counts those at which the chance of lying inside was evaluated, ``covered`` those of them at which it
-    is from 5 to 95 %. ``beyond`` counts those beyond the reach of all other data, where the body is closed whatever is
-    there: no chance says how sure that is.
+    is from 5 to 95 %. ``beyond`` counts those beyond the reach of all other data, where the body is closed by its
+    settings: no chance is known there.
     """
 
     hole: str
@@ -142,9 +142,9 @@ def leave_one_hole_out(
     body : BodyFit
         A body whose data name their holes.
     holes : int
-        Holes left out at most: of those that meet the body or come within reach of it, every so many along its longest
-        direction, so that they lie apart as all do; by default 30, and 8 of a body with more than 1500 conditions.
-        Sections take the place of holes where outlines are given.
+        Holes left out at most: of those that meet the body or come within reach of it, a selection at equal steps in
+        their order along the longest direction, so that they are spaced as all holes are; by default 30, and 8 of a
+        body with more than 1500 conditions. Sections take the place of holes where outlines are given.
     compared : bool
         Whether the two usual methods are scored, too.
     scheduler, workers : str, int
@@ -214,9 +214,9 @@ def _without_hole(task: tuple[BodyFit, str, bool]) -> tuple[HoleScore, ...] | st
 
 
 def _chosen(body: BodyFit, most: int) -> tuple[str, ...]:
-    """Return holes that meet the body or come within its reach: all, or every so many along their longest direction.
+    """Return holes that meet the body or come within its reach: all, or a selection at equal steps in their order.
 
-    Those that lie farthest apart would be the loneliest ones, which the others say least of.
+    The order is that along their longest direction. Holes farthest apart would be those that the others predict worst.
     """
     from scipy.spatial import cKDTree
 

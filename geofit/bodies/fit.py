@@ -35,7 +35,7 @@ Floats = NDArray[np.float64]
 #: Parts of the body that no data support are closed, places between samples on which the field has the other side are
 #: made samples, and the field is fitted again, this often at most.
 ROUNDS = 5
-#: Places between samples are no nearer to other data than this share of the distance between them.
+#: Least distance of a place between samples from other data, as a share of the length that it represents.
 APART = 0.1
 #: Nodes of the raster on which such parts are looked for, along the longest side of the box, and those that the extent
 #: of the body is larger than it.
@@ -131,7 +131,7 @@ def fit_field(data: BodyData, settings: BodySettings) -> Fitted:
         try:
             fit = _solve(prepared, samples, region, frame, settings, fit, fresh)
         except FitError:
-            # A field that leaves some places to the other side is better than none: the checks count them.
+            # The former field misses some places, which the checks count; no field at all would be worse.
             if fit is None:
                 raise
             break

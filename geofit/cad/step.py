@@ -205,10 +205,15 @@ def step_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     What lies beneath the loops of a face is known only where the file states that a fit continues there: then points
     outside are measured as in the fit.
     """
-    return {
-        shape.name: surface_of(shape, whole=shape.attributes.get("beyond_loops") == CONTINUED)
-        for shape in read_shapes(path)
-    }
+    return {shape.name: _surface(shape) for shape in read_shapes(path)}
+
+
+def _surface(shape: FileShape) -> PatchSurface:
+    if shape.attributes.get("beyond_loops") != CONTINUED:
+        return surface_of(shape)
+    surface = surface_of(shape, whole=True)
+    # Without an outline only the loops end the faces.
+    return surface_of(shape) if surface.outline is None else surface
 
 
 def read_shapes(path: str | PathLike[str]) -> list[FileShape]:

@@ -82,18 +82,18 @@ def _with_names(accuracy: Accuracy, points: PointSet, beyond: NDArray[np.bool_])
     """Name the points that the surface does not reach, each with its place in a file."""
     if not beyond.any():
         return accuracy
-    beside = np.flatnonzero(beyond)
+    rows = np.flatnonzero(beyond)
     (count,) = [one.text for one in accuracy.checks if one.name == BEYOND]
     named = [
         message("fitting.point-beyond-edge", "beyond the surface: {point}", point=points.describe(int(i)))
-        for i in beside[:NAMED].tolist()
+        for i in rows[:NAMED].tolist()
     ]
-    if beside.size > NAMED:
+    if rows.size > NAMED:
         named.append(
             message(
                 "fitting.further-points-beyond-edge",
                 "beyond the surface: further points, {count}",
-                count=beside.size - NAMED,
+                count=rows.size - NAMED,
             )
         )
     return replace(accuracy, notes=(*accuracy.notes, *(note.with_severity("warning") for note in (count, *named))))

@@ -1,4 +1,4 @@
-"""A horizon's surface beside the rest of its site: measured dips, the study area, the ground and holes."""
+"""Compare a horizon's surface with the rest of its site: measured dips, the study area, the ground and holes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ CELL_SHARE = 0.1
 
 
 def add_site_checks(surface: HorizonFit, site: Site, horizon: str = "") -> HorizonFit:
-    """Return a checked surface whose checks also check whether it agrees with dips, study area, ground and holes.
+    """Return a checked surface with further checks: whether it agrees with dips, study area, ground and holes.
 
     Parameters
     ----------

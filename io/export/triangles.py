@@ -2,7 +2,7 @@
 
 OBJ and PLY hold the coordinates of the data in double precision: those of the map where the data are in them. STL and
 glTF store single precision, which at 3e6 m is a quarter of a metre: their coordinates are relative to an origin,
-written to ``FILE.origin.txt`` beside them.
+written to ``FILE.origin.txt`` next to them.
 """
 
 from __future__ import annotations

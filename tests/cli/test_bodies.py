@@ -5,25 +5,14 @@ from __future__ import annotations
 import csv
 import json
 import os
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-
-from geofit.cli.main import main
+from commands import run
 
 DATA = Path(os.environ.get("GEOFIT_DATA", Path(__file__).parents[2].parent / "shared" / "data"))
 EAST, NORTH = 500_000.0, 3_100_000.0
-
-
-def run(monkeypatch, capsys, *arguments) -> tuple[int, str, str]:
-    """Run the command in this process; return exit code, stdout, stderr."""
-    monkeypatch.setattr(sys, "argv", ["geofit", *map(str, arguments)])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    captured = capsys.readouterr()
-    return int(stop.value.code or 0), captured.out, captured.err
 
 
 def write(path: Path, header: str, rows) -> Path:

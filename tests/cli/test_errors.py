@@ -3,21 +3,11 @@
 from __future__ import annotations
 
 import json
-import sys
 
 import pytest
+from commands import run
 
 from geofit.cli import console
-from geofit.cli.main import main
-
-
-def ended(monkeypatch, capsys, *arguments) -> tuple[int, str, str]:
-    """Run the command in this process; return exit code, stdout, stderr."""
-    monkeypatch.setattr(sys, "argv", ["geofit", *map(str, arguments)])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    captured = capsys.readouterr()
-    return int(stop.value.code or 0), captured.out, captured.err
 
 
 @pytest.mark.parametrize(
@@ -50,9 +40,9 @@ def test_an_error_is_a_document_on_stdout_where_json_was_asked_for(arguments, co
     for ending in ("csv", "toml", "step", "stl", "npy", "svx"):
         (tmp_path / f"bad.{ending}").write_text("x,y,z\n1,2,a\n", encoding="utf-8")
     given = [word.replace("{t}", str(tmp_path)) for word in arguments]
-    left, silent, told = ended(monkeypatch, capsys, *given)
+    left, silent, told = run(monkeypatch, capsys, *given)
     assert (left, silent) == (2, ""), "without --json nothing stands on stdout"
-    left, out, err = ended(monkeypatch, capsys, *given, "--json")
+    left, out, err = run(monkeypatch, capsys, *given, "--json")
     assert left == 2
     assert err.splitlines()[-1] == told.splitlines()[-1]
     data = json.loads(out)
@@ -71,7 +61,7 @@ def test_an_error_is_a_document_on_stdout_where_json_was_asked_for(arguments, co
 
 def test_the_error_document_holds_place_remedy_and_rows(tmp_path, monkeypatch, capsys):
     (tmp_path / "p.csv").write_text("x,y,z\n1,2,a\n2,3,b\n", encoding="utf-8")
-    left, out, _ = ended(monkeypatch, capsys, "fit", tmp_path / "p.csv", "--out", tmp_path / "o", "--json")
+    left, out, _ = run(monkeypatch, capsys, "fit", tmp_path / "p.csv", "--out", tmp_path / "o", "--json")
     data = json.loads(out)
     assert left == data["exit_code"] == 2
     assert data["file"].endswith("p.csv")

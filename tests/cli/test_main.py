@@ -16,24 +16,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import run
 
 from geofit.cli import console
-from geofit.cli.main import main
 from geofit.data.errors import Cancelled
 from geofit.data.messages import message
 from geofit.data.site import ImportIssue, Site
 from geofit.project import run as run_horizons
 
 WEST, SOUTH = 500_000.0, 3_100_000.0
-
-
-def run(monkeypatch, capsys, *arguments) -> tuple[int, str, str]:
-    """Run the command in this process; return exit code, stdout, stderr."""
-    monkeypatch.setattr(sys, "argv", ["geofit", *map(str, arguments)])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    captured = capsys.readouterr()
-    return int(stop.value.code or 0), captured.out, captured.err
 
 
 def write_picks(path: Path, extra: str = "", names: tuple[str, ...] = ("T3/T2",)) -> Path:

@@ -255,5 +255,5 @@ def test_every_stage_of_a_large_volume_can_be_stopped(stage, tmp_path, monkeypat
 
 
 def test_a_file_that_went_between_opening_and_finding_is_an_error_in_words(tmp_path):
-    with pytest.raises(InputError, match="no such file or folder"):
+    with pytest.raises(InputError, match="the file or folder does not exist"):
         pore_view(tmp_path / "gone.npy", 0, 0, VOXEL)

@@ -94,7 +94,7 @@ def test_unclear_files_are_errors_with_a_remedy(tmp_path):
         read_volume(tmp_path / "a.raw", pore=1, voxel=1e-6)
     with pytest.raises(InputError, match="bytes"):
         read_volume(tmp_path / "a.raw", pore=1, voxel=1e-6, shape=(2, 2, 2))
-    with pytest.raises(InputError, match="no such file"):
+    with pytest.raises(InputError, match="the file or folder does not exist"):
         read_volume(tmp_path / "b.raw", pore=1, voxel=1e-6)
     (tmp_path / "broken.npz").write_bytes(b"PK")
     with pytest.raises(InputError, match="damaged"):

@@ -139,7 +139,7 @@ def test_packed_files_and_unclear_labels_are_errors(tmp_path):
 
     with pytest.raises(InputError, match="Unpack"):
         open_volume(written("npz", tmp_path), pore=1, voxel=1e-6)
-    with pytest.raises(InputError, match="no such file"):
+    with pytest.raises(InputError, match="the file or folder does not exist"):
         open_volume(tmp_path / "none.raw", pore=1, voxel=1e-6)
     values = np.arange(3, dtype=np.uint8).repeat(20).reshape(6, 2, 5)
     with pytest.raises(VolumeError, match="3 different values"):
