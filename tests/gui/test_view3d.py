@@ -15,8 +15,9 @@ import pytest
 # PySide6 is asked for in conftest.
 from panel_samples import item_of
 from PySide6.QtCore import QPoint, QPointF, Qt, QTimer
-from PySide6.QtGui import QImage
+from PySide6.QtGui import QImage, QSurface
 from PySide6.QtTest import QTest
+from shiboken6.Shiboken import getAllValidWrappers
 
 from geofit import HorizonFit, PointSet
 from geofit.checks.check import check
@@ -505,6 +506,15 @@ def test_a_view_can_be_closed_twice_and_leaves_no_timer(shown, qtbot):
     timers = shown.findChildren(QTimer)
     assert len(timers) >= 5
     assert not any(timer.isActive() for timer in timers)
+
+
+def test_a_closed_view_holds_no_surface_of_opengl(shown):
+    def surfaces():
+        return sum(type(wrapper) is QSurface for wrapper in getAllValidWrappers())
+
+    before = surfaces()
+    shown.close()
+    assert surfaces() == before - 1
 
 
 def test_without_opengl_the_view_says_what_is_missing():
