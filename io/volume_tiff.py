@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.files import is_file
-from geofit.data.messages import message
+from geofit.data.messages import Untranslated, message
 
 __all__ = ["read_pages", "read_tiff", "read_tiff_folder", "slice_files"]
 
@@ -93,7 +93,13 @@ def _page(image: Any, name: str) -> NDArray[Any]:
 
 
 def slice_files(path: Path) -> list[Path]:
-    """Return the TIFF files of a folder in the order of the numbers in their names."""
+    """Return the TIFF files of a folder in the order of the numbers in their names.
+
+    Raises
+    ------
+    InputError
+        If there is none, or the numbers have gaps.
+    """
     files = [file for file in path.iterdir() if file.suffix.lower() in (".tif", ".tiff") and is_file(file)]
     if not files:
         raise InputError(
@@ -102,7 +108,34 @@ def slice_files(path: Path) -> list[Path]:
             file=str(path),
         )
     files.sort(key=lambda file: [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", file.name)])
+    _require_all(files)
     return files
+
+
+def _require_all(files: list[Path]) -> None:
+    """Reject slices of which some are missing: their numbers rise by one step nearly always, else by several of it."""
+    words = [re.split(r"(\d+)", file.stem)[1::2] for file in files]
+    if len({len(one) for one in words}) != 1:
+        return
+    numbers = np.array(words, dtype=object).astype(np.float64).reshape(len(files), -1)
+    varying = np.flatnonzero((numbers != numbers[0]).any(axis=0))
+    if len(varying) != 1:
+        return
+    steps = np.diff(numbers[:, varying[0]])
+    step = steps.min()
+    if step <= 0 or (steps % step != 0).any() or np.median(steps) != step or (steps == step).all():
+        return
+    gap = int(np.argmax(steps > step))
+    raise InputError(
+        message(
+            "io.slices-missing",
+            "slices are missing by the numbers of the files: {count}, the first after {file}",
+            count=int((steps / step - 1).sum()),
+            file=Untranslated(files[gap].name),
+        ),
+        message("io.add-slices", "Add them to the folder, or number the files without gaps if none is missing."),
+        file=str(files[0].parent),
+    )
 
 
 def read_tiff_folder(path: Path) -> NDArray[Any]:

@@ -234,14 +234,15 @@ def _sweeps(adjusted: AdjustedSurvey, found: Sections, ends: Ends) -> Sweeps:
     )
     right /= np.linalg.norm(right, axis=1)[:, None]
     walls = np.maximum(found.walls, THIN) if survey.across else across(found.walls, flat)
-    degree = np.bincount(np.r_[start, end], minlength=len(survey.stations))
+    # A shot that was surveyed again is the same passage, not another branch.
+    links, same = np.unique(np.sort(np.column_stack([start, end]), axis=1), axis=0, return_inverse=True)
+    degree = np.bincount(links.ravel(), minlength=len(survey.stations))
     # A lone round section ends in half a ball.
     cap = (walls[..., 0] + walls[..., 1] + walls[..., 2] + walls[..., 3]) / 4
     if ends == "flat":
         cap = np.where(np.column_stack([degree[start], degree[end]]) == 1, 0.0, cap)
-    return Sweeps(
-        adjusted.xyz[start], along, right, np.cross(right, along), length, walls, cap, _branches(start, end, degree)
-    )
+    branch = _branches(start, end, degree, same.ravel())
+    return Sweeps(adjusted.xyz[start], along, right, np.cross(right, along), length, walls, cap, branch)
 
 
 def across(walls: Floats, cosine: Floats) -> Floats:
@@ -252,14 +253,17 @@ def across(walls: Floats, cosine: Floats) -> Floats:
     return np.asarray(np.maximum(np.concatenate([walls[..., :2], vertical], axis=2), THIN))
 
 
-def _branches(start: Ints, end: Ints, degree: Ints) -> Ints:
-    """Return the branch (k,) of each shot: shots that meet at a station of two shots share it."""
+def _branches(start: Ints, end: Ints, degree: Ints, same: Ints) -> Ints:
+    """Return the branch (k,) of each shot.
+
+    Shots share it that meet at a station with two neighbours, or join the same stations: those have equal ``same``.
+    """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
     count = len(start)
     first: dict[int, int] = {}
-    pairs = []
+    pairs = list(zip(np.unique(same, return_index=True)[1][same].tolist(), range(count), strict=True))
     for shot, ends in enumerate(zip(start.tolist(), end.tolist(), strict=True)):
         for station in ends:
             if degree[station] == 2:

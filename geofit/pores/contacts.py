@@ -10,12 +10,18 @@ from geofit.pores.balls import MaximalBalls
 
 __all__ = ["contact_points"]
 
+#: Least length of the mean of unit normals at a voxel that one plane may represent: below it, balls touch the voxel
+#: from sides that oppose each other, as they do a single voxel of rock or a wall one voxel thick.
+_ONE_SIDED = 0.25
+
 
 def contact_points(balls: MaximalBalls, pore: NDArray[np.bool_]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the points where balls touch the rock, and the outward normals there.
 
     A contact is a rock voxel at exactly F² from a centre. Its point lies half a voxel before its middle, towards the
     ball; its normal points from the centre to it, and is the mean over all balls that touch it, weighted by radius.
+    Where these balls oppose each other, and at single voxels of rock, the contacts are the middles of the voxel's faces
+    to the pores.
 
     Returns
     -------
@@ -30,9 +36,29 @@ def contact_points(balls: MaximalBalls, pore: NDArray[np.bool_]) -> tuple[NDArra
     normals: NDArray[np.float64] = np.stack(
         [np.bincount(row, weights=vectors[:, axis], minlength=len(voxel)) for axis in range(3)], axis=1
     )
-    normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-12)[:, None]
-    middle = np.stack(np.unravel_index(voxel, pore.shape), axis=1).astype(np.float64)
-    return middle - 0.5 * normals / edges, normals
+    length = np.linalg.norm(normals, axis=1)
+    reach = np.bincount(row, weights=np.linalg.norm(vectors, axis=1), minlength=len(voxel))
+    index = np.stack(np.unravel_index(voxel, pore.shape), axis=1)
+    own, inward = _faces(index, pore)
+    opposed = (length < _ONE_SIDED * reach) | (np.bincount(own, minlength=len(voxel)) == 6)
+    faces = np.flatnonzero(opposed[own])
+    one = np.ones(len(voxel), bool)
+    one[own[faces]] = False
+    normals = normals[one] / np.maximum(length[one], 1e-12)[:, None]
+    points = np.concatenate([index[one] - 0.5 * normals / edges, index[own[faces]] - 0.5 * inward[faces]])
+    return points, np.concatenate([normals, inward[faces]])
+
+
+def _faces(index: NDArray[np.int64], pore: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Return the row of the rock voxel and the inward normal of each face between rock voxels and pores."""
+    rows, normals = [], []
+    for axis in range(3):
+        for side in (-1, 1):
+            step = side * (np.arange(3) == axis)
+            inside = np.flatnonzero(((index + step >= 0) & (index + step < pore.shape)).all(axis=1))
+            rows.append(inside[pore[tuple((index[inside] + step).T)]])
+            normals.append(np.broadcast_to(-step.astype(np.float64), (len(rows[-1]), 3)))
+    return np.concatenate(rows), np.concatenate(normals)
 
 
 @njit(cache=True)

@@ -180,7 +180,7 @@ def _assembled(
     number = np.cumsum(kept) - 1
 
     free = np.zeros((count, 3))
-    inscribed = np.maximum(widest_balls(peaks, free, space, edges, centre.astype(float)) - 0.5, radius)
+    inscribed = np.maximum(widest_balls(centre.astype(float), free, space, edges) - 0.5, radius)
     sections = measure_sections(inner, space, pore_of, edges, radius_at, in_faces=False)
     use = kept[inner.first] & own
     to_centre = np.stack(

@@ -85,7 +85,10 @@ def _inscribed(
     widest = windows.level == np.repeat(np.maximum.reduceat(windows.level, begin), faces)
     count = np.add.reduceat(widest.astype(np.int64), begin)
     middle = np.stack([np.add.reduceat(index[:, axis] * widest, begin) for axis in range(3)], axis=1) / count[:, None]
-    gap = np.where(widest, ((index - np.repeat(middle, faces, axis=0)) ** 2).sum(axis=1), np.inf)
-    face = np.lexsort((gap, np.repeat(np.arange(len(begin)), faces)))[begin]
+    gap = np.where(widest, (((index - np.repeat(middle, faces, axis=0)) * edges) ** 2).sum(axis=1), np.inf)
+    window = np.repeat(np.arange(len(begin)), faces)
+    # Faces at the same distance all count, or the order of the axes would decide.
+    start = np.flatnonzero(gap <= np.repeat(np.minimum.reduceat(gap, begin), faces) + 1e-9)
     normal = vector / np.maximum(np.linalg.norm(vector, axis=1), 1e-9)[:, None]
-    return widest_balls(windows.voxel[face], normal, space, edges, index[face])
+    found = widest_balls(index[start], normal[window[start]], space, edges)
+    return np.asarray(np.maximum.reduceat(found, np.searchsorted(window[start], np.arange(len(begin)))))

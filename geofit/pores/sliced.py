@@ -101,7 +101,7 @@ class SlicedVolume:
         size = n0 * n1 * n2
         shares = {label: count / size for label, count in sorted(counts.items(), key=lambda item: -item[1])}
         # One voxel of each label decides whether the labels leave a doubt.
-        labels = np.array(list(shares))
+        labels = np.array(list(shares), part.dtype)
         chosen = pore_mask(labels.reshape(1, 1, -1), pore, shares).ravel()
         object.__setattr__(self, "shape", (n0, n1, n2))
         object.__setattr__(self, "voxel", voxel_edges(voxel))

@@ -14,8 +14,10 @@ __all__ = ["own_saddle", "widest_balls"]
 
 #: Balls that are worth a thread.
 _LEAST = 500
-#: A centre may move this far from its voxel, in voxels along each axis.
-_MOVE = 0.75
+#: A centre may move this far from its start, in voxels along each axis.
+_MOVE = 1.25
+#: Distances and places that differ by less are the same; so many equally good places are followed at once.
+_SAME, _TIES = 1e-9, 16
 #: Third pores that are looked for in the ball of a window; more than two or three are rare.
 _THIRDS = 8
 #: A window with less than this share of the area of its own ball's section is a strip between other windows.
@@ -23,109 +25,112 @@ _STRIP = 0.5
 
 
 def widest_balls(
-    voxel: NDArray[np.int64],
-    normal: NDArray[np.float64],
-    space: PackedSpace,
-    edges: NDArray[np.float64],
-    start_at: NDArray[np.float64],
+    start: NDArray[np.float64], normal: NDArray[np.float64], space: PackedSpace, edges: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return the distance to the nearest rock voxel's centre from the best place near each start.
 
+    It does not depend on how the volume is turned or mirrored: a step goes to the best of all places round the centre,
+    and to each of them if several are equally good.
+
     Parameters
     ----------
-    voxel : ndarray of int64, shape (n,)
-        Flat index of the voxel in which the distance to the rock is known to be large.
+    start : ndarray of float, shape (n, 3)
+        Places in indices at which the distance to the rock is known to be large.
     normal : ndarray of float, shape (n, 3)
         The centre moves only across this direction; zero: it moves freely.
     space : PackedSpace
         The pore space.
     edges : ndarray of float, shape (3,)
-    start_at : ndarray of float, shape (n, 3)
-        Place from which the search starts, in indices; within a voxel of ``voxel``.
     """
     found = in_parts(
-        lambda first, end: _widest_balls(voxel[first:end], normal[first:end], space, edges, start_at[first:end]),
-        len(voxel),
-        _LEAST,
+        lambda first, end: _widest_balls(start[first:end], normal[first:end], space, edges), len(start), _LEAST
     )
     return np.concatenate(found)
 
 
 @njit(cache=True, nogil=True)
 def _widest_balls(
-    voxel: NDArray[np.int64],
-    normal: NDArray[np.float64],
-    space: PackedSpace,
-    edges: NDArray[np.float64],
-    start_at: NDArray[np.float64],
+    start: NDArray[np.float64], normal: NDArray[np.float64], space: PackedSpace, edges: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    n0, n1, n2 = space.shape
-    out = np.zeros(len(voxel))
-    for row in range(len(voxel)):
-        here = voxel[row]
-        i, j, k = here // (n1 * n2), here // n2 % n1, here % n2
-        # The nearest rock voxel bounds which others can matter: those within its distance and twice the move.
-        reach = 1
-        nearest = np.inf
-        rocks = np.empty((64, 3))
-        count = 0
-        while reach <= n0 + n1 + n2:
-            limit = nearest + 4.0 * _MOVE * edges.max()
-            if reach * edges.min() > limit + edges.max():
-                break
-            for a in range(max(i - reach, 0), min(i + reach + 1, n0)):
-                for b in range(max(j - reach, 0), min(j + reach + 1, n1)):
-                    shell = abs(a - i) == reach or abs(b - j) == reach
-                    step = 1 if shell else max(2 * reach, 1)
-                    for c in range(k - reach, k + reach + 1, step):
-                        x, y, z = (a - i) * edges[0], (b - j) * edges[1], (c - k) * edges[2]
-                        gap = np.sqrt(x * x + y * y + z * z)
-                        if gap > limit or c < 0 or c >= n2 or slot(space, (a * n1 + b) * n2 + c) >= 0:
-                            continue
-                        nearest = min(nearest, gap)
-                        if gap <= nearest + 4.0 * _MOVE * edges.max():
-                            if count == len(rocks):
-                                grown = np.empty((2 * count, 3))
-                                grown[:count] = rocks
-                                rocks = grown
-                            rocks[count, 0], rocks[count, 1], rocks[count, 2] = x, y, z
-                            count += 1
-            reach += 1
+    out = np.zeros(len(start))
+    places, better = np.zeros((_TIES, 3)), np.zeros((_TIES, 3))
+    for row in range(len(start)):
+        rocks, count = _rocks_near(start[row], space, edges)
         if count == 0:
             out[row] = np.inf
             continue
-        px, py, pz = (
-            (start_at[row, 0] - i) * edges[0],
-            (start_at[row, 1] - j) * edges[1],
-            (start_at[row, 2] - k) * edges[2],
-        )
-        nx, ny, nz = normal[row]
-        best = _nearest(rocks, count, px, py, pz, 0.0)
-        origin = _nearest(rocks, count, 0.0, 0.0, 0.0, 0.0)
-        if origin > best and nx == 0 and ny == 0 and nz == 0:
-            px, py, pz, best = 0.0, 0.0, 0.0, origin
+        places[0] = 0.0
+        ties = 1
+        best = _nearest(rocks, count, 0.0, 0.0, 0.0, 0.0)
         stride = 0.5
         while stride > 0.02:
-            moved = False
-            for a in range(-1, 2):
-                for b in range(-1, 2):
-                    for c in range(-1, 2):
-                        sx, sy, sz = a * stride * edges[0], b * stride * edges[1], c * stride * edges[2]
-                        across = sx * nx + sy * ny + sz * nz
-                        x, y, z = px + sx - across * nx, py + sy - across * ny, pz + sz - across * nz
-                        if (
-                            abs(x) > (_MOVE + 0.5) * edges[0]
-                            or abs(y) > (_MOVE + 0.5) * edges[1]
-                            or abs(z) > (_MOVE + 0.5) * edges[2]
-                        ):
-                            continue
-                        distance = _nearest(rocks, count, x, y, z, best)
-                        if distance > best + 1e-9:
-                            best, px, py, pz, moved = distance, x, y, z, True
-            if not moved:
+            found = 0
+            for tie in range(ties):
+                for step in range(27):
+                    sx, sy, sz = (
+                        (step // 9 - 1) * stride * edges[0],
+                        (step // 3 % 3 - 1) * stride * edges[1],
+                        (step % 3 - 1) * stride * edges[2],
+                    )
+                    across = sx * normal[row, 0] + sy * normal[row, 1] + sz * normal[row, 2]
+                    x = places[tie, 0] + sx - across * normal[row, 0]
+                    y = places[tie, 1] + sy - across * normal[row, 1]
+                    z = places[tie, 2] + sz - across * normal[row, 2]
+                    if abs(x) > _MOVE * edges[0] or abs(y) > _MOVE * edges[1] or abs(z) > _MOVE * edges[2]:
+                        continue
+                    distance = _nearest(rocks, count, x, y, z, best - _SAME if found else best)
+                    if distance > best + _SAME:
+                        best, found = distance, 0
+                    elif found == 0 or distance < best - _SAME or found == _TIES:
+                        continue
+                    if not _listed(better, found, x, y, z):
+                        better[found, 0], better[found, 1], better[found, 2] = x, y, z
+                        found += 1
+            if found == 0:
                 stride *= 0.5
+            else:
+                places, better, ties = better, places, found
         out[row] = best
     return out
+
+
+@njit(cache=True, nogil=True)
+def _rocks_near(
+    start: NDArray[np.float64], space: PackedSpace, edges: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], int]:
+    """Return the rock voxels, from a place in indices, that can be the nearest to any place to which it may move."""
+    n0, n1, n2 = space.shape
+    i, j, k = int(np.floor(start[0] + 0.5)), int(np.floor(start[1] + 0.5)), int(np.floor(start[2] + 0.5))
+    more = 2.0 * _MOVE * np.sqrt((edges * edges).sum())
+    rocks = np.empty((64, 3))
+    count, reach, nearest = 0, 0, np.inf
+    while reach <= n0 + n1 + n2 and (reach - 1.5) * edges.min() <= nearest + more:
+        for a in range(max(i - reach, 0), min(i + reach + 1, n0)):
+            for b in range(max(j - reach, 0), min(j + reach + 1, n1)):
+                shell = abs(a - i) == reach or abs(b - j) == reach
+                step = 1 if shell else max(2 * reach, 1)
+                for c in range(k - reach, k + reach + 1, step):
+                    x, y, z = (a - start[0]) * edges[0], (b - start[1]) * edges[1], (c - start[2]) * edges[2]
+                    gap = np.sqrt(x * x + y * y + z * z)
+                    if gap > nearest + more or c < 0 or c >= n2 or slot(space, (a * n1 + b) * n2 + c) >= 0:
+                        continue
+                    nearest = min(nearest, gap)
+                    if count == len(rocks):
+                        grown = np.empty((2 * count, 3))
+                        grown[:count] = rocks
+                        rocks = grown
+                    rocks[count, 0], rocks[count, 1], rocks[count, 2] = x, y, z
+                    count += 1
+        reach += 1
+    return rocks, count
+
+
+@njit(cache=True, nogil=True)
+def _listed(places: NDArray[np.float64], count: int, x: float, y: float, z: float) -> bool:
+    for row in range(count):
+        if abs(places[row, 0] - x) + abs(places[row, 1] - y) + abs(places[row, 2] - z) < _SAME:
+            return True
+    return False
 
 
 @njit(cache=True, nogil=True)

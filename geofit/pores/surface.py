@@ -48,8 +48,9 @@ Construction = Literal["contact", "blend"]
 
 #: Support of a contact, in voxels: two layers of contacts on either side.
 _SUPPORT = 2.5
-#: The volume is measured in at most so many boxes of so many voxels along each axis, and corrected so often.
-BOXES, BOX, ROUNDS = 16, 32, 2
+#: The volume is measured in at most so many boxes of so many voxels along each axis, and corrected so often, and then
+#: as often again as it misses more than this share.
+BOXES, BOX, ROUNDS, MORE_ROUNDS, ENOUGH = 16, 32, 2, 8, 0.005
 #: Where cells as large as voxels miss more than this share of the volume, as in channels one voxel wide, they are
 #: halved, down to this part of a voxel, and while the sample has no more of them than this.
 MISSED, LEAST_CELL, MOST_CELLS = 0.05, 0.25, 1 << 24
@@ -402,8 +403,14 @@ def _contact_field(volume: RockVolume) -> ContactField:
         # Voxels that are held change the volume a little, and another volume the faults.
         for _ in range(ROUNDS + 1 if raw.cell == 1 else 2 * ROUNDS + 2):
             body = _rescued(_of_equal_volume(body, volume), volume, near, heights)
+        missed = abs(_measured(body, volume)[0])
+        for _ in range(MORE_ROUNDS):
+            if not ENOUGH < missed <= MISSED:
+                break
+            body = _rescued(_of_equal_volume(body, volume), volume, near, heights)
+            missed = abs(_measured(body, volume)[0])
         cells = volume.pore.size * np.prod(volume.edges) / (raw.cell / 2) ** 3
-        if raw.cell <= LEAST_CELL or cells > MOST_CELLS or abs(_measured(body, volume)[0]) <= MISSED:
+        if raw.cell <= LEAST_CELL or cells > MOST_CELLS or missed <= MISSED:
             return body
         raw = replace(raw, cell=raw.cell / 2)
 

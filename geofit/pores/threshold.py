@@ -34,7 +34,9 @@ def value_counts(values: NDArray[Any]) -> tuple[int, NDArray[np.int64]] | None:
     counts = np.zeros(high - low + 1, np.int64)
     # Slice by slice: a whole volume would be copied into eight bytes a voxel.
     for slice_ in values:
-        counts += np.bincount(slice_.ravel().astype(np.int64) - low, minlength=len(counts))
+        # In eight bytes without a sign, differences are right for numbers of any type.
+        above = slice_.ravel().astype(np.uint64) - np.uint64(low % (1 << 64))
+        counts += np.bincount(above.astype(np.int64), minlength=len(counts))
     return low, counts
 
 

@@ -160,7 +160,6 @@ def work_and_flow(
     first, last = LAYERS, number.shape[axis] - LAYERS
     flow_of = number, wall, weights, pressure, axis, edges
     work, flow = 0.0, 0.0
-    small = (edges**2).sum() / 72.0
     for i in range(n0):
         for j in range(n1):
             for k in range(n2):
@@ -173,9 +172,9 @@ def work_and_flow(
                     v = _velocity(flow_of, d, i, j, k)
                     if v == 0.0:
                         continue
-                    drag = _drag(flow_of, d, v, i, j, k)
-                    # The mean over a face is the velocity in its middle and h^2 / 24 of its curvature.
-                    mean = v * max(1.0 - small * max(drag / v, 0.0), _LEAST_MEAN)
+                    drag, bend = _drag(flow_of, d, v, i, j, k)
+                    # The mean over a face is the velocity in its middle and 1 / 24 of its second differences.
+                    mean = v * max(1.0 - max(bend / v, 0.0) / 24.0, _LEAST_MEAN)
                     # Faces of the sample belong to it by half.
                     share = 0.5 if d == axis and at in (first, last) else 1.0
                     work += share * mean * drag
@@ -214,11 +213,11 @@ def _mirrored(pressure: float, at: int, end: int) -> float:
 
 
 @njit(cache=True)
-def _drag(flow_of: _Flow, d: int, v: float, i: int, j: int, k: int) -> float:
-    """Return -laplace v of the velocity v along d on the low face of a voxel."""
+def _drag(flow_of: _Flow, d: int, v: float, i: int, j: int, k: int) -> tuple[float, float]:
+    """Return -laplace v of the velocity v along d on the low face of a voxel, and the sum of its second differences."""
     number, wall, edges = flow_of[0], flow_of[1], flow_of[5]
     a, b, c = i - (d == 0), j - (d == 1), k - (d == 2)
-    total = 0.0
+    total, bend = 0.0, 0.0
     for e in range(3):
         walls, others, near = 0, 0.0, 0.5
         for side in (-1, 1):
@@ -239,4 +238,5 @@ def _drag(flow_of: _Flow, d: int, v: float, i: int, j: int, k: int) -> float:
         else:
             step = 8.0 * v
         total += step / edges[e] ** 2
-    return total
+        bend += step
+    return total, bend

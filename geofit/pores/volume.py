@@ -168,6 +168,8 @@ def check_array(values: NDArray[Any]) -> None:
 
 def pore_mask(values: NDArray[Any], pore: Any, shares: dict[Any, float] | None = None) -> NDArray[np.bool_]:
     """Return the pore voxels, or raise if the label leaves a doubt; ``shares`` are those of the values, if known."""
+    if isinstance(pore, np.ndarray) and pore.ndim == 0:
+        pore = pore.item()
     several = isinstance(pore, Collection) and not isinstance(pore, str | bytes)
     if pore is None or not several:
         shares = shares or label_shares(values)
@@ -192,9 +194,9 @@ def pore_mask(values: NDArray[Any], pore: Any, shares: dict[Any, float] | None =
                     pore=pore,
                 )
             )
-        mask = values == pore
+        mask = values == _as_stored(pore, values)
     else:
-        mask = np.isin(values, np.asarray(list(pore)))
+        mask = np.isin(values, _as_stored(list(pore), values))
     if not mask.any():
         raise VolumeError(
             message(
@@ -205,6 +207,15 @@ def pore_mask(values: NDArray[Any], pore: Any, shares: dict[Any, float] | None =
             )
         )
     return np.ascontiguousarray(mask)
+
+
+def _as_stored(pore: Any, values: NDArray[Any]) -> Any:
+    """Return pore values as the voxels store them: 0.1 has other digits in four bytes than in eight."""
+    stated = np.asarray(pore)
+    if values.dtype.kind != "f" or stated.dtype.kind not in "buif":
+        return stated
+    with np.errstate(over="ignore"):  # beyond the largest number of the type: no voxel has it
+        return stated.astype(values.dtype)
 
 
 def _listed(shares: dict[Any, float]) -> str:

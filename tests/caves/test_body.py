@@ -270,3 +270,19 @@ def test_settings_are_checked():
         centreline_body(survey, blend=-1)
     with pytest.raises(SettingsError, match="spacing"):
         centreline_body(survey).volume(0.0)
+
+
+def test_a_shot_that_was_surveyed_again_changes_nothing():
+    """It was taken for a branch of its own: its end swelled, or bulged out of a flat end."""
+    tube, places = [2.0] * 4, np.array([[0, 0, 0], [10, 0, 0], [20, 0, 0], [30, 0, 0]], float)
+    bodies = []
+    for again in ((), ((0, 1),), ((2, 1),), ((0, 1), (1, 0), (3, 2))):
+        shots = ShotList()
+        for a, b in (*((k, k + 1) for k in range(3)), *again):
+            shot = shots.add(str(a), str(b), places[b] - places[a], 1)
+            shots.add_walls(str(a), shot, tube)
+            shots.add_walls(str(b), shot, tube)
+        bodies.append(centreline_body(shots.survey("tube"), ends="flat"))
+    at = np.random.default_rng(0).uniform([-3, -4, -4], [33, 4, 4], (500, 3))
+    for body in bodies[1:]:
+        np.testing.assert_allclose(body.value(at), bodies[0].value(at), atol=1e-9)

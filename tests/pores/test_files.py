@@ -21,6 +21,7 @@ from geofit.io.export.network import (
     write_statoil,
 )
 from geofit.io.meshes import read_stl
+from geofit.io.volume_slices import open_volume
 from geofit.io.volumes import read_volume
 from geofit.pores import RockVolume, VolumeError, pore_network
 from geofit.project.metaballs_run import run_metaballs
@@ -198,3 +199,25 @@ def test_a_surface_without_the_volume_of_the_voxels_is_reported(monkeypatch, tmp
     run = run_pores(RockVolume(line, pore=True, voxel=1e-6), tmp_path / "missed", "missed")
     assert not list((tmp_path / "missed").glob("*.stl"))
     assert run.surface_note.code == "pores.no-surface"
+
+
+@pytest.mark.parametrize(
+    ("numbers", "missing"),
+    [
+        ((1, 2, 4, 5), ": 1, the first after s2.tif"),
+        ((10, 20, 30, 60, 70, 90), ": 3, the first after s30.tif"),
+        ((0, 2, 4, 6), None),
+        ((3, 17, 20, 41), None),
+    ],
+)
+def test_a_folder_with_a_gap_between_its_slices_is_refused(tmp_path, numbers, missing):
+    from PIL import Image
+
+    for number in numbers:
+        Image.fromarray(np.full((3, 4), number % 2, np.uint8)).save(tmp_path / f"s{number}.tif")
+    for read in (read_volume, open_volume):
+        if missing is None:
+            assert read(tmp_path, pore=0, voxel=1e-6).shape == (len(numbers), 3, 4)
+            continue
+        with pytest.raises(InputError, match=missing):
+            read(tmp_path, pore=0, voxel=1e-6)

@@ -306,3 +306,47 @@ def test_flow_through_pores_from_face_to_face_is_a_warning():
     assert [text.params["share"] for text in one.messages] == pytest.approx([1.0] * 3)
     assert {text.severity for text in one.messages} == {"warning"}
     assert many.messages == ()
+
+
+@pytest.mark.parametrize("edges", [(1.0, 1.0, 1.0), (1.0, 1.7, 2.6)])
+def test_mirror_images_have_the_same_permeability(edges):
+    """The places of the widest balls must not depend on the order of the axes, nor on where a row begins."""
+    from scipy import ndimage
+
+    field = ndimage.gaussian_filter(np.random.default_rng(1).random((36, 28, 22)), 2.0 / np.array(edges))
+    pore = field < np.quantile(field, 0.35)
+    found = []
+    for order in ((0, 1, 2), (2, 0, 1), (1, 0, 2)):
+        for flipped in ((), (0,), (1,), (2,), (0, 1, 2)):
+            turned = RockVolume(np.flip(pore.transpose(order), flipped), pore=True, voxel=[edges[a] for a in order])
+            along = network_permeability(pore_network(turned)).square_metres
+            found.append([along[order.index(axis)] for axis in range(3)])
+    assert min(found[0]) > 0
+    np.testing.assert_allclose(found, [found[0]] * len(found), rtol=1e-6)
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("edges", [(1.0, 1.0, 3.0), (3.0, 1.0, 1.0), (1.0, 2.0, 5.0)])
+def test_slits_in_long_voxels(edges, axis):
+    """The profile bends across the slit only: the other edges of a voxel do not matter."""
+    shape = np.array([12, 12, 12])
+    shape[axis] = 4
+    walls = [(2, 2) if a == axis else (0, 0) for a in range(3)]
+    slit = RockVolume(np.pad(np.ones(shape, bool), walls), pore=True, voxel=edges)
+    height = 4 * edges[axis]
+    truth = [0.0 if a == axis else height**3 / 12 / (2 * height) for a in range(3)]
+    assert laplace_permeability(slit).square_metres == pytest.approx(truth, rel=2e-3)
+    assert network_permeability(pore_network(slit)).square_metres == pytest.approx(truth, rel=0.1)
+
+
+@pytest.mark.parametrize(("cells", "h0", "h1"), [(4, 1.0, 5.0), (4, 5.0, 1.0), (5, 1.0, 10.0), (4, 4.0, 1.0)])
+def test_a_slit_of_long_cells_conducts_exactly(cells, h0, h1):
+    cell = np.zeros((cells + 2, 12), np.uint8)
+    cell[1:-1] = 1
+    cell[1:-1, [0, -1]] = OUTSIDE
+    assert duct_conductance(cell, h0, h1) == pytest.approx((cells * h0) ** 3 / 12 * 10 * h1, rel=1e-3)
+    rectangle = np.pad(np.ones((40, cells), np.uint8), 1)
+    a, b = sorted((40 * h0, cells * h1))
+    series = sum(np.tanh(n * np.pi * b / (2 * a)) / n**5 for n in range(1, 40, 2))
+    truth = b * a**3 / 12 * (1 - 192 * a / (np.pi**5 * b) * series)
+    assert duct_conductance(rectangle, h0, h1) == pytest.approx(truth, rel=0.01)

@@ -68,3 +68,13 @@ def test_whole_numbers_are_counted_into_the_classes_of_numpy(kind, low, high):
 def test_values_that_are_not_whole_or_too_many_are_not_counted_one_by_one():
     assert value_counts(np.full((2, 2, 2), 0.5)) is None
     assert value_counts(np.array([[[0, 1 << 20]]])) is None
+
+
+@pytest.mark.parametrize("kind", [np.int8, np.uint64, np.int64])
+def test_the_largest_numbers_of_a_type_are_counted(kind):
+    most = np.iinfo(kind).max
+    values = np.array([[[most, most - 100, most]]], kind)
+    first, each = value_counts(values)
+    assert first == most - 100
+    assert np.flatnonzero(each).tolist() == [0, 100]
+    assert each[[0, 100]].tolist() == [1, 2]

@@ -5,6 +5,7 @@ import pytest
 
 from geofit.data.errors import ArgumentError, GeofitError
 from geofit.pores import RockVolume, VolumeError, maximal_balls, pore_network
+from geofit.pores.sliced import SlicedVolume
 
 
 def test_the_label_is_never_guessed_and_the_error_lists_shares():
@@ -65,3 +66,14 @@ def test_the_mask_is_a_copy_that_cannot_be_written():
     assert volume.pore.all()
     with pytest.raises(ValueError, match="read-only"):
         volume.pore[0] = False
+
+
+@pytest.mark.parametrize("pore", [0.1, [0.1], np.float64(0.1), np.array(0.1), [0.1, 1e300]])
+@pytest.mark.parametrize("kind", [RockVolume, SlicedVolume])
+def test_a_pore_value_is_that_of_the_voxels_type(kind, pore):
+    """0.1 in four bytes is not 0.1 in eight."""
+    array = np.zeros((4, 4, 4), np.float32)
+    array[1:3] = 0.1
+    volume = kind(array, pore=pore, voxel=1e-6)
+    assert volume.porosity == 0.5
+    assert volume.slab(0, 4).sum(axis=(1, 2)).tolist() == [0, 16, 16, 0]
