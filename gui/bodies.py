@@ -195,7 +195,7 @@ class Bodies(QObject):
     def _inputs(self, name: str, source: BodySource, settings: BodySettings) -> tuple[object, ...]:
         document, horizons = self._document, self._horizons()
         folder = document.site_folder or Path.cwd()
-        return source, settings, name, document.site.boreholes, folder, horizons
+        return source, settings, name, document.site.boreholes, folder, horizons, document.site.ground
 
     def _horizons(self) -> dict[str, HorizonFit]:
         self._using, self._edits = self.showing.horizons(), self._document.state.horizons

@@ -16,12 +16,13 @@ from geofit.data.given import arguments_checked
 from geofit.data.logs import IntervalLog
 from geofit.data.messages import Untranslated, message
 from geofit.data.site import Ground, Hole, ImportIssue, TableCount
-from geofit.io.axes import Region, check_axes
+from geofit.io.axes import Region, check_axes, check_elevations
 from geofit.io.collar_heights import check_heights
 from geofit.io.columns import COLLAR, COLLAR_ON_GROUND, INTERVALS, plain_name
 from geofit.io.desurvey import Desurvey, WellPath, desurvey
 from geofit.io.journal import Journal
 from geofit.io.lower_limits import tops_from_above
+from geofit.io.not_reached import open_bases, set_marks_aside
 from geofit.io.rows import Rows, name_key, read_rows
 from geofit.io.source import Source, as_source
 from geofit.io.surveys import Collar, Stations, read_stations
@@ -65,7 +66,7 @@ def read_boreholes(
     intervals: Sequence[str | Path | Source] = (),
     dip: DipSign | None = None,
     *,
-    declination: float = 0.0,
+    declination: float | None = None,
     method: Desurvey = "minimum-curvature",
 ) -> Boreholes:
     """Read collar, survey and interval tables.
@@ -81,8 +82,9 @@ def read_boreholes(
     dip : {"down-positive", "down-negative"}, optional
         Sign of the dips; if it is not stated the majority's sign is down, with a warning.
 
-    declination : float
-        Degrees to add to the azimuths, east positive; 0 where they are relative to grid north.
+    declination : float, optional
+        Degrees to add to the azimuths, east positive; 0 where they are relative to grid north. Without it they are
+        read as such, which is listed.
     method : {"minimum-curvature", "tangential"}
         Path between two stations.
 
@@ -132,7 +134,7 @@ def load_boreholes(
     journal: Journal,
     region: Region | None = None,
     *,
-    declination: float = 0.0,
+    declination: float | None = None,
     method: Desurvey = "minimum-curvature",
     ground: Ground | None = None,
 ) -> Boreholes:
@@ -173,7 +175,7 @@ def _read_collars(
     dip: DipSign | None,
     journal: Journal,
     region: Region | None,
-    declination: float,
+    declination: float | None,
     ground: Ground | None,
 ) -> dict[str, Collar]:
     rows = read_rows(source, COLLAR if ground is None else COLLAR_ON_GROUND, journal)
@@ -199,6 +201,7 @@ def _read_collars(
             message("io.give-hole-length", "Give the length of the hole in metres."),
         )
     check_axes(rows, x, y, region)
+    check_elevations(rows, z)
     check_heights(rows, x, y, z, ground)
     first: dict[str, int] = {}
     alike: dict[tuple[str, ...], int] = {}
@@ -276,7 +279,9 @@ def _drape(rows: Rows, x: Floats, y: Floats, z: Floats, ground: Ground) -> None:
             rows.warn(i, "z", reason, message("io.give-elevation", "Give its elevation."), severity="note")
 
 
-def _collar_stations(rows: Rows, name: list[str], dip: DipSign | None, declination: float) -> dict[str, Stations]:
+def _collar_stations(
+    rows: Rows, name: list[str], dip: DipSign | None, declination: float | None
+) -> dict[str, Stations]:
     """Return the straight holes whose azimuth and dip are in the collar table."""
     if not {"azimuth", "dip"} <= set(rows.columns):
         _warn_of_half_attitude(rows)
@@ -425,7 +430,9 @@ def _read_log(
     source: Source, collars: Mapping[str, Collar], paths: Mapping[str, WellPath], journal: Journal
 ) -> IntervalLog:
     rows = read_rows(source, INTERVALS, journal)
-    code, top, base = np.array(rows.text("code")), rows.numbers("from"), rows.numbers("to")
+    code = np.array(rows.text("code"))
+    marks = set_marks_aside(rows, code.tolist())
+    top, base = rows.numbers("from"), rows.numbers("to")
     lower_only = "from" not in rows.columns
     name = np.array(rows.require_known("hole", rows.holes(base if lower_only else top), collars, "collar table"))
     end = np.array([collars[h].end if h in collars else np.nan for h in name])
@@ -503,5 +510,6 @@ def _read_log(
                 message("io.correct-limits", "Correct from or to."),
             )
     rows.close()
+    ended = open_bases(marks, name, top, base, rows.ok)
     order = order[rows.ok[order]]
-    return IntervalLog(rows.file, name[order], top[order], base[order], code[order], rows.line[order])
+    return IntervalLog(rows.file, name[order], top[order], base[order], code[order], rows.line[order], ended[order])

@@ -21,6 +21,10 @@ from geofit.io.journal import Journal
 
 __all__ = ["Contacts", "Limit", "load_contacts", "load_rule", "take_contacts"]
 
+#: So much of a hole below the last interval of its log is its end all the same, metres and as a share of its depth: the
+#: depth of a hole is rounded, or was planned.
+REST, REST_SHARE = 0.5, 0.02
+
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
@@ -256,7 +260,9 @@ def _limit_in_hole(
         gap = depth - float(above.max(initial=0.0))
     else:
         below = log.top[other][log.top[other] >= depth - tolerance]
-        if depth >= end - tolerance:
+        # A log that ends a little above its hole ends with it: nothing shows that its last unit does, too.
+        rest = tolerance if len(below) else max(REST, REST_SHARE * end)
+        if depth >= end - rest or (log.ended is not None and log.ended[run[1]]):
             return depth, 0
         gap = float(below.min(initial=end)) - depth
     if gap > tolerance:

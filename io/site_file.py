@@ -222,7 +222,8 @@ def _built(
         horizon = stated.get(name) or _Horizon(name, None, {}, FitSettings())
         settings[name] = horizon.settings
         points[name] = _with_accuracy(reader, PointSet.concatenate(sets), horizon, journal)
-        list_places(name, points[name], journal, horizon.settings.coincidence_distance)
+        steep = horizon.settings.frame in ("best-plane", "sections")
+        list_places(name, points[name], journal, horizon.settings.coincidence_distance, steep=steep)
     order, faults = read_relations(reader, top, label, list(points))
     tell(progress, "read", 1.0)
     return Site(
@@ -371,7 +372,7 @@ def _boreholes(
         dip,
         journal,
         region,
-        declination=reader.get(table, "declination", float, where) or 0.0,
+        declination=reader.get(table, "declination", float, where),
         method="tangential" if method == "tangential" else "minimum-curvature",
         ground=ground,
     )

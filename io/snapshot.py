@@ -1,7 +1,7 @@
 """The data of a site as one file, so that an earlier state of it can be looked at again.
 
 A zip archive of NumPy arrays, and ``site.json`` with the words. It holds what surfaces are fitted to and what pictures
-show: points, study area, ground, dips, holes and section lines; not the interval logs, nor what the readers found.
+show: points, study area, ground, dips, holes with their logs and section lines; not what the readers found.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from geofit.data.labels import Labels
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.site import Ground, Hole, Orientations, Section, Site
+from geofit.io.snapshot_logs import logs_from, pack_logs
 
 __all__ = ["read_snapshot", "write_snapshot"]
 
@@ -40,6 +41,7 @@ def write_snapshot(site: Site, path: Path) -> None:
     """
     arrays: Arrays = {}
     words = {
+        "boreholes": pack_logs(site.boreholes, arrays),
         "format": FORMAT, "version": VERSION, "name": site.name, "crs": site.crs, "datum": site.datum,
         "inputs": dict(site.inputs),
         "order": list(site.order), "faults": {fault: list(cut) for fault, cut in site.faults.items()},
@@ -86,7 +88,7 @@ def read_snapshot(path: Path) -> Site:
                     with archive.open(name) as stream:
                         arrays[name.removesuffix(".npy")] = np.lib.format.read_array(stream, allow_pickle=False)
         return _site(words, arrays)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, GeofitError, zipfile.BadZipFile):
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, GeofitError, zipfile.BadZipFile):
         raise InputError(
             message("io.snapshot-unreadable", "The earlier data are damaged or incomplete"),
             message("io.keep-snapshot", "Without this file the earlier state cannot be compared."),
@@ -126,6 +128,7 @@ def _site(words: dict[str, Any], arrays: Arrays) -> Site:
         orientations=_group(Orientations, "orientations", arrays),
         order=tuple(words["order"]),
         faults={fault: tuple(cut) for fault, cut in words["faults"].items()},
+        boreholes=logs_from(words.get("boreholes", ()), arrays),
     )
 
 

@@ -24,7 +24,10 @@ class HolePath(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class IntervalLog:
-    """One interval table: arrays of equal length, sorted by hole and depth; ``row`` is the file's line."""
+    """One interval table: arrays of equal length, sorted by hole and depth; ``row`` is the file's line.
+
+    ``ended`` are the intervals whose base was not reached, as the log states: their unit goes on below. None: no such.
+    """
 
     file: str
     hole: NDArray[np.str_]
@@ -32,6 +35,7 @@ class IntervalLog:
     base: Floats
     code: NDArray[np.str_]
     row: NDArray[np.int64]
+    ended: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.errors import SettingsError
 from geofit.data.given import arguments_checked
 from geofit.data.messages import message
+from geofit.data.site import Ground
 from geofit.implicit.field import Box, points_of
+from geofit.morphing.columns import RockColumns, heights
 from geofit.morphing.errors import MorphError
 from geofit.surfaces.protocol import HasElevation
 
@@ -43,6 +45,8 @@ class BetweenSurfaces:
         Distance in plan from the edge of the area that both surfaces reach, negative within it.
     box : pair of (3,) arrays
         Box of the body about the origin.
+    ground : RectBivariateSpline or None
+        Elevation of the ground as those of the surfaces: above it there is nothing. None if none was given.
     """
 
     name: str
@@ -51,6 +55,7 @@ class BetweenSurfaces:
     lower: RectBivariateSpline
     edge: RectBivariateSpline
     box: Box
+    ground: RectBivariateSpline | None = None
 
     @property
     def field(self) -> BetweenSurfaces:
@@ -81,7 +86,9 @@ class BetweenSurfaces:
         x, y = (np.clip(xyz[:, k], low[k], high[k]) for k in (0, 1))
         beyond = np.hypot(xyz[:, 0] - x, xyz[:, 1] - y)
         values, gradients = [], []
-        for surface, sign in ((self.upper, 1.0), (self.lower, -1.0)):
+        for surface, sign in ((self.upper, 1.0), (self.lower, -1.0), (self.ground, 1.0)):
+            if surface is None:
+                continue
             sx, sy = surface(x, y, dx=1, grid=False), surface(x, y, dy=1, grid=False)
             length = np.sqrt(1 + sx**2 + sy**2)
             values.append(sign * (xyz[:, 2] - surface(x, y, grid=False)) / length)
@@ -100,6 +107,7 @@ def between(
     area: ArrayLike | None = None,
     spacing: float | None = None,
     name: str = "",
+    ground: Ground | HasElevation | None = None,
 ) -> BetweenSurfaces:
     """Return the body between two surfaces: a horizon, ground or survey above a common base.
 
@@ -114,6 +122,8 @@ def between(
         Of the raster on which the surfaces are taken, metres; by default 1/200 of the longer side.
     name : str
         Name of the body.
+    ground : Ground or surface, optional
+        The ground, above which there is nothing of the body; where it is not known (nan) it ends nothing.
 
     Returns
     -------
@@ -125,11 +135,11 @@ def between(
     SettingsError
         If the area is not known, or the raster too fine.
     MorphError
-        If the upper surface lies nowhere above the lower one.
+        If the upper surface lies nowhere above the lower one, below the ground.
 
     Notes
     -----
-    The field is the largest of the distances from both surfaces, to first order, and from the edge in plan:
+    The field is the largest of the distances from the surfaces, to first order, and from the edge in plan:
     ``docs/morph.md``.
     """
     low, high = _area(upper, lower, area)
@@ -147,18 +157,42 @@ def between(
         )
     counts = np.maximum(np.ceil((high - low) / h - 1e-9).astype(int) + 1, 4)
     x, y = (np.linspace(low[k], high[k], counts[k]) for k in (0, 1))
-    heights = [_heights(surface, x, y) for surface in (upper, lower)]
-    reached = np.isfinite(heights[0]) & np.isfinite(heights[1])
-    thick = reached & (heights[0] > heights[1])
+    a, b = np.meshgrid(x, y, indexing="ij")
+    levels = [heights(surface, a, b) for surface in (upper, lower)]
+    top, base = RockColumns(upper, lower, ground)(a, b)
+    reached = np.isfinite(top) & np.isfinite(base)
+    thick = reached & (top > base)
     if not thick.any():
+        if ground is not None and (reached & (levels[0] > levels[1])).any():
+            raise MorphError(
+                message(
+                    "morphing.no-thickness-below-ground",
+                    "Below the ground the upper surface lies nowhere above the lower one.",
+                )
+            )
         raise MorphError(message("morphing.no-thickness", "The upper surface lies nowhere above the lower one."))
-    tops, bases = heights[0][thick], heights[1][thick]
+    tops, bases = top[thick], base[thick]
     origin = np.array([*np.round((low + high) / 2, -1), np.round((tops.max() + bases.min()) / 2)])
-    return _body(x, y, heights, reached, origin, (bases.min(), tops.max()), name)
+    if ground is not None:
+        levels.append(_known(heights(ground, a, b), levels[0]))
+    return _body(x, y, levels, reached, origin, (bases.min(), tops.max()), name)
+
+
+def _known(ground: Floats, upper: Floats) -> Floats:
+    """Return the ground with nodes where it is not known raised above the upper surface: there it ends nothing."""
+    from scipy.ndimage import distance_transform_edt
+
+    unknown = ~np.isfinite(ground)
+    if not unknown.any():
+        return ground
+    if unknown.all():
+        return np.full(ground.shape, np.nanmax(upper) + 1.0)
+    nearest = distance_transform_edt(unknown, return_distances=False, return_indices=True)
+    return np.where(unknown, np.fmax(ground[tuple(nearest)], upper + 1.0), ground)
 
 
 def _body(
-    x: Floats, y: Floats, heights: list[Floats], reached: NDArray[np.bool_], origin: Floats,
+    x: Floats, y: Floats, levels: list[Floats], reached: NDArray[np.bool_], origin: Floats,
     span: tuple[float, float], name: str,
 ) -> BetweenSurfaces:  # fmt: skip
     from scipy.interpolate import RectBivariateSpline
@@ -171,12 +205,11 @@ def _body(
     # The edge is at the last reached node, half a cell within the next one.
     edge = np.where(reached, -(inward - min(step)), outward)
     across, along = x - origin[0], y - origin[1]
-    splines = [RectBivariateSpline(across, along, height[tuple(nearest)] - origin[2], kx=3, ky=3) for height in heights]
+    splines = [RectBivariateSpline(across, along, level[tuple(nearest)] - origin[2], kx=3, ky=3) for level in levels]
     low = np.array([across[0], along[0], span[0] - origin[2]])
     high = np.array([across[-1], along[-1], span[1] - origin[2]])
-    return BetweenSurfaces(
-        name, origin, splines[0], splines[1], RectBivariateSpline(across, along, edge, kx=2, ky=2), (low, high)
-    )
+    rim = RectBivariateSpline(across, along, edge, kx=2, ky=2)
+    return BetweenSurfaces(name, origin, splines[0], splines[1], rim, (low, high), *splines[2:])
 
 
 def _area(upper: Any, lower: Any, area: ArrayLike | None) -> tuple[Floats, Floats]:
@@ -197,10 +230,3 @@ def _area(upper: Any, lower: Any, area: ArrayLike | None) -> tuple[Floats, Float
             "boxes overlap.",
         )
     )
-
-
-def _heights(surface: Any, x: Floats, y: Floats) -> Floats:
-    if isinstance(surface, int | float):
-        return np.full((len(x), len(y)), float(surface))
-    a, b = np.meshgrid(x, y, indexing="ij")
-    return np.asarray(surface.elevation(a.ravel(), b.ravel()), float).reshape(a.shape)

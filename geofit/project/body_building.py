@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from geofit.bodies.strata import StratumVolume
     from geofit.bodies.violations import Violation
     from geofit.data.prediction import LeftOutBody
+    from geofit.data.site import Ground
     from geofit.morphing.body import MorphBody
 
 __all__ = [
@@ -121,6 +122,7 @@ def make_body(
     folder: Path,
     horizons: Mapping[str, Any],
     progress: Progress | None = None,
+    ground: Ground | None = None,
 ) -> tuple[BodyProvenance, BodyResult]:
     """Make a body, and find out everything about it that a window shows.
 
@@ -138,6 +140,8 @@ def make_body(
         Those that may cut it.
     progress : callable, optional
         ``progress(stage, fraction)``; False stops.
+    ground : Ground, optional
+        The ground of the open site: bodies between horizons end at it.
 
     Raises
     ------
@@ -153,11 +157,11 @@ def make_body(
         case BetweenHorizons(upper, lower):
             from geofit.project.horizon_body import horizon_body
 
-            closed = horizon_body(upper, lower, name, horizons)
+            closed = horizon_body(upper, lower, name, horizons, ground)
             result, given = BodyResult(closed), closed.digest
         case MorphFrame():
             made = [
-                make_body(end.source, end.settings, one, campaigns, folder, horizons, None)
+                make_body(end.source, end.settings, one, campaigns, folder, horizons, None, ground)
                 for end, one in zip(source.ends, source.names, strict=True)
             ]
             tell(progress, "morph", 0.4)
@@ -194,10 +198,10 @@ def _fitted(
 
 def made_body(
     source: BodySource, settings: BodySettings, name: str, campaigns: Sequence[Any], folder: Path,
-    horizons: Mapping[str, Any], *, progress: Progress,
+    horizons: Mapping[str, Any], ground: Ground | None, *, progress: Progress,
 ) -> tuple[BodyProvenance, BodyResult]:  # fmt: skip
     """Make a body, with progress by keyword; see :func:`make_body`."""
-    return make_body(source, settings, name, campaigns, folder, horizons, progress)
+    return make_body(source, settings, name, campaigns, folder, horizons, progress, ground)
 
 
 def measured_strata(result: BodyResult, horizons: Mapping[str, Any], *, progress: Progress | None = None) -> BodyResult:

@@ -7,8 +7,6 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
@@ -18,16 +16,12 @@ from geofit.project.step_files import Signed, certified
 
 if TYPE_CHECKING:
     from geofit.cad.solid_read_back import SolidReadBack
-    from geofit.morphing.body import MorphBody
 
 __all__ = ["BLOCK_ENDINGS", "TRIANGLE_ENDINGS", "BodyExport", "export_body"]
 
 #: Endings of triangle formats; of those that hold blocks or the field, which only a fitted body has.
 TRIANGLE_ENDINGS = (".stl", ".obj", ".ply", ".glb", ".vtp", ".ts")
 BLOCK_ENDINGS = (".csv", ".omf", ".geoh5", ".vti")
-
-#: Cells along the longest side of a body of a file, for its distances.
-CELLS = 96
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +61,12 @@ def export_body(
     ending, fitted = target.suffix.casefold(), result.fitted
     tell(progress, "write", 0.1)
     if ending in (".step", ".stp"):
+        from geofit.project.triangle_body import triangle_body
+
         made = result.body
-        body = _with_field(made, name) if isinstance(made, MeshBody) else replace(made, name=name)
+        body = (
+            triangle_body(made.overview, made.origin, name) if isinstance(made, MeshBody) else replace(made, name=name)
+        )
         stated = (signed or Signed()).about([body.extent[0] + body.origin])
         found = body.write_step(target, **stated.fields, colour=colour)
         old = [name] if result.stale else []
@@ -96,29 +94,11 @@ def export_body(
     return BodyExport(target)
 
 
-def _with_field(body: MeshBody, name: str) -> MorphBody:
-    """Return triangles of a file as a body with a field: the distance on a lattice, which the read-back needs."""
-    from geofit.implicit.grid import spline_grid
-    from geofit.implicit.lattice import Lattice
-    from geofit.morphing.body import MorphBody
-    from geofit.morphing.distance import distances, samples_of
-
-    lower, upper = body.extent
-    room = 4 * float((upper - lower).max()) / CELLS
-    lattice = Lattice.around(lower - room, upper + room, cells=CELLS)
-    samples = samples_of(body.overview, lattice)
-    field = spline_grid(distances(samples, samples.inside), lattice)
-    mesh = body.overview
-    return MorphBody(name, 0.0, 0.0, None, field, body.origin, lattice, mesh, mesh)
-
-
 def _triangles(result: BodyResult, name: str, target: Path) -> None:
-    from geofit.geometry.mesh import Mesh
     from geofit.io.export.write import FORMATS
+    from geofit.project.triangle_body import plain_mesh
 
-    made, count = result.mesh, len(result.mesh.triangles)
-    patch, uv = np.zeros(count, np.int64), np.zeros((count, 3, 2))
-    mesh = Mesh(made.vertices, made.triangles, patch, uv, np.asarray(result.body.origin, float), (name,))
+    mesh = plain_mesh(result.mesh, result.body.origin, name)
     chosen = FORMATS[{".ts": "tsurf"}.get(target.suffix.casefold(), target.suffix.casefold()[1:])]
     write = getattr(import_module(f"geofit.{chosen.module}"), chosen.function)
     write(mesh if chosen.takes == "vtp" else {name: mesh}, target)

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
+from geofit.data.site import Ground
+from geofit.implicit.mesh import TriangleMesh
 from geofit.project.body_record import BetweenHorizons, BodySource, MorphFrame
 from geofit.project.mesh_body import MeshBody
 
@@ -17,21 +19,24 @@ __all__ = ["horizon_body", "needed_horizons"]
 
 #: Cells of the triangles along the longest side.
 CELLS = 120
+#: What lies above the ground is stated if it is more than this share of what the horizons enclose.
+LEAST = 1e-4
 
 
-def horizon_body(upper: str, lower: str | float, name: str, horizons: Mapping[str, Any]) -> MeshBody:
-    """Return the body below one horizon and above another, or above an elevation; its triangles are for drawing.
+def horizon_body(
+    upper: str, lower: str | float, name: str, horizons: Mapping[str, Any], ground: Ground | None = None
+) -> MeshBody:
+    """Return the body below one horizon and above another, or above an elevation; it ends at the ground.
 
     Raises
     ------
     SettingsError
         If a horizon has no surface.
     MorphError
-        If the upper surface lies nowhere above the lower one.
+        If the upper surface lies nowhere above the lower one, below the ground.
     """
-    from geofit.implicit.isosurface import isosurface
-    from geofit.implicit.lattice import Lattice
     from geofit.morphing.between import between
+    from geofit.morphing.columns import RockColumns, column_mesh
 
     missing = sorted(needed_horizons(BetweenHorizons(upper, lower)) - horizons.keys())
     if missing:
@@ -42,10 +47,29 @@ def horizon_body(upper: str, lower: str | float, name: str, horizons: Mapping[st
                 names=", ".join(missing),
             )
         )
-    body = between(horizons[upper], horizons[lower] if isinstance(lower, str) else lower, name=name)
-    digest = hashlib.sha256(b"".join(np.ascontiguousarray(s.get_coeffs()).tobytes() for s in (body.upper, body.lower)))
-    mesh = isosurface(body, Lattice.around(*body.bounds, cells=CELLS), capped=True)
-    return MeshBody(name, body.origin, mesh, closed=body, digest=digest.hexdigest()[:16])
+    surfaces = horizons[upper], horizons[lower] if isinstance(lower, str) else lower
+    body = between(*surfaces, name=name, ground=ground)
+    faces = [body.upper, body.lower] if body.ground is None else [body.upper, body.lower, body.ground]
+    digest = hashlib.sha256(b"".join(np.ascontiguousarray(face.get_coeffs()).tobytes() for face in faces))
+    low, high = (corner[:2] + body.origin[:2] for corner in body.bounds)
+    step = float((high - low).max()) / CELLS
+    x, y = (np.linspace(low[k], high[k], max(int(np.ceil((high - low)[k] / step)), 4) + 1) for k in (0, 1))
+    mesh = column_mesh(RockColumns(*surfaces, ground), x, y, body.origin)
+    whole = mesh if ground is None else column_mesh(RockColumns(*surfaces), x, y, body.origin)
+    return MeshBody(name, body.origin, mesh, closed=body, digest=digest.hexdigest()[:16], notes=_above(whole, mesh))
+
+
+def _above(whole: TriangleMesh, mesh: TriangleMesh) -> tuple[Message, ...]:
+    """Return how much of what the horizons enclose lies above the ground and is left out."""
+    above = whole.volume - mesh.volume
+    if not above > LEAST * whole.volume:
+        return ()
+    text = message(
+        "project.body-ends-at-ground",
+        "The body ends at the ground: {volume:whole} m3 between its horizons lie above it and are left out.",
+        volume=above,
+    )
+    return (text,)
 
 
 def needed_horizons(source: BodySource) -> set[str]:

@@ -201,7 +201,10 @@ class OrderLine:
     """Two horizons: thickness in metres, and where and how much they cross.
 
     ``passed`` is None where they share no area. ``crossing_area`` (m²) and ``crossing_volume`` (m³) are 0 where the
-    upper stays above the lower; else ``deepest`` is the place (x, y) of the least thickness.
+    upper stays above the lower; else ``deepest`` is the place (x, y) of the least thickness. ``volume`` (m³) lies
+    between them, below the ground if there is one, where a layer is ``present`` (m²), which is known to be from
+    ``at_least`` to ``at_most`` where holes ``without`` it show that; ``doubtful`` (m³) is the volume between such
+    holes alone.
     """
 
     upper: str
@@ -212,6 +215,12 @@ class OrderLine:
     crossing_area: float
     crossing_volume: float
     deepest: tuple[float, float] | None
+    volume: float | None
+    present: float | None
+    at_least: float | None
+    at_most: float | None
+    without: int
+    doubtful: float
     text: Message
 
 

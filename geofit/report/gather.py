@@ -377,7 +377,9 @@ def _order(order: Order) -> OrderLine:
     found = order.check()
     return OrderLine(
         order.upper, order.lower, found.passed, _finite(order.min), _finite(order.mean), order.crossed_area,
-        order.crossed_volume, order.thinnest if order.crossings else None, found.text,
+        order.crossed_volume, order.thinnest if order.crossings else None, _finite(order.volume),
+        _finite(order.present), _finite(order.at_least), _finite(order.at_most), order.without, order.doubtful,
+        found.text,
     )  # fmt: skip
 
 

@@ -13,6 +13,7 @@ from geofit.data.numbers import is_finite
 from geofit.data.points import PointSet
 from geofit.data.site import Ground
 from geofit.sampling.contours import interval_for
+from geofit.surfaces.below_ground import below_ground
 from geofit.surfaces.protocol import Surface
 
 __all__ = ["deviation_grid", "elevation_grid", "thickness_grid"]
@@ -37,14 +38,19 @@ def elevation_grid(surface: Surface, cell: float | None = None) -> Ground:
     return _grid(_extent(surface), cell, surface.elevation)
 
 
-def thickness_grid(upper: Surface, lower: Surface, cell: float | None = None) -> Ground:
+def thickness_grid(upper: Surface, lower: Surface, cell: float | None = None, ground: Ground | None = None) -> Ground:
     """Return upper minus lower elevation, metres, nan where either is absent; errors as elevation_grid.
 
-    Negative where the horizons cross.
+    Negative where the horizons cross. With a ground, only what lies below it counts; 0 where both horizons lie above.
     """
     boxes = [_extent(upper), _extent(lower)]
     box = np.max([b[0] for b in boxes], axis=0), np.min([b[1] for b in boxes], axis=0)
-    return _grid(box, cell, lambda x, y: upper.elevation(x, y) - lower.elevation(x, y))
+
+    def value(x: Floats, y: Floats) -> Floats:
+        top, base = upper.elevation(x, y), lower.elevation(x, y)
+        return below_ground(top, x, y, ground) - below_ground(base, x, y, ground)
+
+    return _grid(box, cell, value)
 
 
 def deviation_grid(surface: Surface, points: PointSet, cell: float | None = None) -> Ground:

@@ -42,7 +42,7 @@ class HeightField:
 
     def __init__(self, surface: HorizonFit) -> None:
         self.name, self.origin, self.outline = surface.name, surface.origin, surface.outline
-        self.epsilon = surface.settings.epsilon
+        self.epsilon, self.points = surface.settings.epsilon, surface.points
         mappings = [plan_map(patch) for patch in surface.patches]
         self._mappings: list[PlanMap] = [one for one in mappings if one is not None]
         if not mappings or len(self._mappings) < len(mappings):

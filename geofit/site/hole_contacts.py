@@ -51,8 +51,9 @@ def check_holes(surface: HorizonFit, site: Site, horizon: str = "") -> Check | N
     Notes
     -----
     Only holes of the interval tables that give contacts of the horizon count, and only as far as they are logged. Where
-    a hole passes the surface within the uppermost interval of its log and others follow, the horizon was eroded before
-    that interval was deposited, or never was there: that is reported, not a failure.
+    a hole passes the surface within the uppermost interval of its log and others follow, or above a contact of a
+    horizon that ``site.order`` places above this one (an unconformity), the horizon was eroded before what lies there
+    was deposited, or never was there: that is reported, not a failure.
     """
     name = horizon or surface.name
     own = site.horizons.get(name, surface.points)
@@ -72,11 +73,11 @@ def check_holes(surface: HorizonFit, site: Site, horizon: str = "") -> Check | N
         places[:, 2] - surface.elevation(places[:, 0], places[:, 1]),
         np.cumsum([len(track) for _, track in tracks])[:-1],
     )
-    least = surface.settings.interior_tolerance
+    least, cut = surface.settings.interior_tolerance, _lowest_above(site, name)
     passed = [
         found
         for (hole, track), over in zip(tracks, height, strict=False)
-        if (found := _pass_of(hole, track, over, _logged(logs, hole), least)) is not None
+        if (found := _pass_of(hole, track, over, _logged(logs, hole), least, cut.get(hole, np.inf))) is not None
     ]
     if not passed:
         text = message("site.holes-have-contacts", "each hole that passes the surface has a contact of the horizon")
@@ -100,8 +101,9 @@ def check_holes(surface: HorizonFit, site: Site, horizon: str = "") -> Check | N
     else:
         text = message(
             "site.holes-pass-cover",
-            "holes that pass the surface within the uppermost interval of their log and have no contact of the "
-            "horizon: {count} of {total} ({names}); it is eroded there or has pinched out",
+            "holes that pass the surface within the uppermost interval of their log, or above a horizon that the order "
+            "places above this one, and have no contact of the horizon: {count} of {total} ({names}); it is eroded "
+            "there or has pinched out",
             **figures,
         )
     return Check(CONTACTS, False if wrong else None, float(len(named)), 0.0, "1", text,
@@ -110,12 +112,22 @@ def check_holes(surface: HorizonFit, site: Site, horizon: str = "") -> Check | N
 
 @dataclass(frozen=True)
 class _Pass:
-    """Where a hole passes the surface, how far it goes on, metres, and whether that is in its log's first interval."""
+    """Where a hole passes the surface, how far it goes on, metres, and whether that is in what covers the horizon."""
 
     hole: str
     place: tuple[float, float, float]
     far: float
     covered: bool
+
+
+def _lowest_above(site: Site, horizon: str) -> dict[str, float]:
+    """Return the elevation of the lowest contact, in each hole, of the horizons that the order places above one."""
+    above = site.order[: site.order.index(horizon)] if horizon in site.order else ()
+    found: dict[str, float] = {}
+    for points in (site.horizons[name] for name in above if name in site.horizons):
+        for hole, z in zip(points.hole.tolist(), points.xyz[:, 2].tolist(), strict=True):
+            found[hole] = min(z, found.get(hole, np.inf))
+    return found
 
 
 def _logged(logs: Sequence[IntervalLog], hole: str) -> Floats:
@@ -131,10 +143,11 @@ def _track(hole: Hole) -> tuple[str, Floats]:
     return hole.name, np.column_stack([*(np.interp(depth, hole.depth, hole.xyz[:, k]) for k in range(3)), depth])
 
 
-def _pass_of(hole: str, track: Floats, height: Floats, logged: Floats, least: float) -> _Pass | None:
+def _pass_of(hole: str, track: Floats, height: Floats, logged: Floats, least: float, cut: float) -> _Pass | None:
     """Return where a logged hole passes the surface and goes on for more than ``least`` metres; None if it does not.
 
-    ``height`` (k,) is that of the places of its track above the surface.
+    ``height`` (k,) is that of the places of its track above the surface, ``cut`` the elevation of a horizon that cuts
+    this one off in the hole.
     """
     depth = track[:, 3]
     known = np.isfinite(height)
@@ -148,5 +161,5 @@ def _pass_of(hole: str, track: Floats, height: Floats, logged: Floats, least: fl
         far = float(np.abs(height[beyond]).max(initial=0.0))
         if far > least:
             x, y, z, _ = (track[k] + share * (track[k + 1] - track[k])).tolist()
-            return _Pass(hole, (x, y, z), far, bool(at <= logged[0, 1] < end))
+            return _Pass(hole, (x, y, z), far, bool(at <= logged[0, 1] < end or z >= cut - least))
     return None

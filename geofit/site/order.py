@@ -17,6 +17,7 @@ from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.site.height_field import HeightField
 from geofit.site.overlap import HorizonCrossing, Overlap
+from geofit.surfaces.below_ground import below_ground
 
 __all__ = ["Order", "compare_horizons", "compare_pairs", "orders", "require_sequence", "thickness"]
 
@@ -37,6 +38,10 @@ class Order:
     where that is thicker than ``least`` metres, the larger control error of the two: a thinner layer cannot be told
     from none. Above the ground nothing is counted where a ground was given (``grounded``). ``disputed`` (m3) is how
     much of it another horizon of the order claims, which crosses the two.
+
+    If holes met both horizons at one contact (``without``, their number), the layer is counted as present where the
+    nearest hole has it, too; its area is then known to lie between ``at_least`` and ``at_most`` (m2), and ``doubtful``
+    (m3) is the volume over triangles of such holes alone: there the surfaces differ, and no layer is known.
     """
 
     upper: str
@@ -53,6 +58,10 @@ class Order:
     least: float = 0.0
     grounded: bool = False
     disputed: float = 0.0
+    at_least: float = float("nan")
+    at_most: float = float("nan")
+    without: int = 0
+    doubtful: float = 0.0
 
     @property
     def layer(self) -> Message:
@@ -60,8 +69,18 @@ class Order:
         if not np.isfinite(self.volume):
             return EMPTY
         figures: dict[str, float | Message] = {
-            "volume": self.volume, "present": self.present, "least": self.least, "disputed": EMPTY,
+            "volume": self.volume, "present": self.present, "least": self.least, "disputed": EMPTY, "seen": EMPTY,
         }  # fmt: skip
+        if self.without:
+            figures["seen"] = message(
+                "site.layer-area-by-holes",
+                " (at least {low:whole}, at most {high:whole} m2: {count} holes lack it, and {volume:whole} m3 lie "
+                "between such holes alone)",
+                low=self.at_least,
+                high=self.at_most,
+                count=self.without,
+                volume=self.doubtful,
+            )
         if self.disputed > DISPUTED * self.volume:
             figures["disputed"] = message(
                 "site.layer-disputed",
@@ -71,13 +90,14 @@ class Order:
         if self.grounded:
             return message(
                 "site.layer-below-ground",
-                "; between them, below the ground, {volume:whole} m3 over {present:whole} m2 where it is thicker than "
-                "{least:g} m{disputed}",
+                "; between them, below the ground, {volume:whole} m3 over {present:whole} m2{seen} where it is thicker "
+                "than {least:g} m{disputed}",
                 **figures,
             )
         return message(
             "site.layer-between",
-            "; between them {volume:whole} m3 over {present:whole} m2 where it is thicker than {least:g} m{disputed}",
+            "; between them {volume:whole} m3 over {present:whole} m2{seen} where it is thicker than {least:g} m"
+            "{disputed}",
             **figures,
         )
 
@@ -138,7 +158,7 @@ class Order:
 
 
 @arguments_checked
-def thickness(upper: HorizonFit, lower: HorizonFit, x: ArrayLike, y: ArrayLike) -> Floats:
+def thickness(upper: HorizonFit, lower: HorizonFit, x: ArrayLike, y: ArrayLike, ground: Ground | None = None) -> Floats:
     """Return the vertical thickness between two horizons.
 
     Parameters
@@ -147,17 +167,21 @@ def thickness(upper: HorizonFit, lower: HorizonFit, x: ArrayLike, y: ArrayLike) 
         The horizons.
     x, y : (n,) array_like
         Map coordinates, metres; any shapes that broadcast.
+    ground : Ground, optional
+        The ground surface: only what lies below it counts.
 
     Returns
     -------
     (n,) array
-        Upper minus lower elevation, metres: negative where they cross, nan where either is absent.
+        Upper minus lower elevation, metres: negative where they cross, nan where either is absent, 0 where both lie
+        above the ground.
 
     Notes
     -----
     Of an overturned surface the highest limb counts, as in ``elevation``.
     """
-    return np.asarray(upper.elevation(x, y) - lower.elevation(x, y))
+    top, base = (below_ground(one.elevation(x, y), x, y, ground) for one in (upper, lower))
+    return np.asarray(top - base)
 
 
 def orders(
@@ -284,7 +308,7 @@ def _compare(
         return Order(upper.name, lower.name, 0.0, nan, nan, nan, (nan, nan), (nan, nan), ())
     thin, thick = found.thinnest, found.thickest
     least = max(upper.epsilon, lower.epsilon)
-    volume, present, disputed = found.layer(ground, least, above, below)
+    size = found.layer(ground, least, above, below)
     return Order(
         upper=upper.name,
         lower=lower.name,
@@ -295,9 +319,13 @@ def _compare(
         thinnest=thin[:2],
         thickest=thick[:2],
         crossings=found.crossings(ground),
-        volume=volume,
-        present=present,
+        volume=size.volume,
+        present=size.present,
         least=least,
         grounded=ground is not None,
-        disputed=disputed,
+        disputed=size.disputed,
+        at_least=size.at_least,
+        at_most=size.at_most,
+        without=size.without,
+        doubtful=size.doubtful,
     )

@@ -18,12 +18,14 @@ from numpy.typing import NDArray
 
 from geofit.data.site import Ground
 from geofit.site.height_field import HeightField, onto
+from geofit.site.presence import presence_of
 from geofit.site.zero_contours import lattice_triangles, zero_contours
+from geofit.surfaces.below_ground import below_ground
 
 if TYPE_CHECKING:
     from shapely import Geometry
 
-__all__ = ["TOUCH", "HorizonCrossing", "Overlap"]
+__all__ = ["TOUCH", "HorizonCrossing", "LayerSize", "Overlap"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -40,6 +42,8 @@ WINDOW, SHRINK, CLOSE = 9, 0.3, 1e-5
 STARTS = 500
 #: Nodes below zero that settle area and volume (to some 0.1 %), and how fine a cell may be cut for them.
 ENOUGH, FINEST = 4_000, 64
+#: More room than this for a layer below the ground is enough, metres.
+ROOM = 1e3
 #: Nodes of one window at most, and of the one for the mean thickness.
 MOST, MANY = 2_000_000, 100_000
 
@@ -61,6 +65,25 @@ class HorizonCrossing:
     depth: float
     lines: tuple[Floats, ...]
     in_air: float
+
+
+@dataclass(frozen=True)
+class LayerSize:
+    """How much lies between two horizons: ``volume`` in m3, and the area where it is ``present``, m2.
+
+    Where holes met both horizons at one contact, ``without`` of them, the area is at least that of the triangles of
+    holes that all have the layer, and at most that of all triangles but those of holes that all lack it; else all three
+    areas are one, and ``doubtful`` (m3), the volume over the triangles of holes that all lack it, is 0. ``disputed``
+    (m3) is what another horizon claims of the volume.
+    """
+
+    volume: float
+    present: float
+    at_least: float
+    at_most: float
+    without: int
+    doubtful: float
+    disputed: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,20 +145,18 @@ class Overlap:
 
     def layer(
         self, ground: Ground | None, least: float, above: Sequence[HeightField] = (), below: Sequence[HeightField] = ()
-    ) -> tuple[float, float, float]:
-        """Return the volume between the horizons, the area where that is thicker than ``least``, and what is disputed.
+    ) -> LayerSize:
+        """Return how much lies between the horizons, below the ground.
 
-        Where the upper one lies below the lower one there is nothing, nor above the ground; m3, m2 and m3. Disputed is
-        the volume that lies over a horizon that should be ``above`` both, or under one that should be ``below`` them.
+        Where the upper one lies below the lower one there is nothing. Disputed is what lies over a horizon that should
+        be ``above`` both, or under one that should be ``below`` them.
         """
         window = self._fine_upper
         known = np.isfinite(window.value)
         plan = window.plan[known]
         top = self.upper(*plan.T)
         low = top - window.value[known]
-        if ground is not None:
-            over = ground.elevation(*plan.T)
-            top, low = np.fmin(top, over), np.fmin(low, over)
+        top, low = (below_ground(z, plan[:, 0], plan[:, 1], ground) for z in (top, low))
         cap, floor = top, low
         for one in above:
             cap = np.fmin(cap, one(*plan.T))
@@ -144,20 +165,46 @@ class Overlap:
         triangles = lattice_triangles((window.value.shape[0], window.value.shape[1]))
         whole = known.ravel()[triangles].all(axis=1)
         triangles = triangles[whole]
-        size = _signed(window.plan.reshape(-1, 2)[triangles])
+        corners = window.plan.reshape(-1, 2)[triangles]
+        size = _signed(corners)
 
-        def over_zero(thickness: Floats, least: float = 0.0) -> tuple[float, float]:
+        def over(thickness: Floats, least: float = 0.0) -> tuple[Floats, Floats]:
+            """Return the area of each triangle where it is thicker than ``least``, m2, and the volume beyond, m3."""
             value = np.full(window.value.shape, np.nan)
             value[known] = thickness
             value = value.ravel()[triangles]
             # Triangles without any of it are left out: shares are known for those that have a part.
             some = (value > least).any(axis=1)
-            area, volume = _below(least - value[some])
-            return -float(size[some] @ volume), float(size[some] @ area)
+            found = np.zeros((2, len(size)))
+            found[:, some] = size[some] * np.abs(_below(least - value[some]))
+            return found[0], found[1]
 
-        volume = over_zero(top - low)[0]
-        disputed = volume - over_zero(cap - floor)[0] if len(above) or len(below) else 0.0
-        return volume, over_zero(top - low, least)[1], max(disputed, 0.0)
+        volumes = over(top - low)[1]
+        volume = float(volumes.sum())
+        disputed = volume - float(over(cap - floor)[1].sum()) if len(above) or len(below) else 0.0
+        thick = over(top - low, least)[0]
+        seen = presence_of(self.upper.points, self.lower.points)
+        if seen is None:
+            present = float(thick.sum())
+            return LayerSize(volume, present, present, present, 0, 0.0, max(disputed, 0.0))
+        middle = corners.mean(axis=1)
+        having, lacking = seen.around(middle)
+        here = having | (seen.nearest(middle) & ~lacking)
+        room = over(self._room(plan, ground))[0]
+        return LayerSize(
+            volume=volume,
+            present=float(thick[here].sum()),
+            at_least=float(thick[having].sum()),
+            at_most=float(room[~lacking].sum()),
+            without=seen.without,
+            doubtful=float(volumes[lacking].sum()),
+            disputed=max(disputed, 0.0),
+        )
+
+    def _room(self, plan: Floats, ground: Ground | None) -> Floats:
+        """Return how far the ground lies above the lower horizon at (n, 2) places, metres, at most ROOM."""
+        over = np.full(len(plan), np.nan) if ground is None else ground.elevation(*plan.T)
+        return np.clip(np.where(np.isnan(over), np.inf, over) - self.lower(*plan.T), -ROOM, ROOM)
 
     @cached_property
     def _fine_upper(self) -> _Window:

@@ -38,6 +38,8 @@ Floats = NDArray[np.float64]
 GROUND_PLACES = 400
 #: Lines of a section need not be nearer to the surface than this, metres.
 TOLERANCE = 0.05
+#: Pieces of a hole to the thickness of a section, and pieces of a hole at most.
+PIECES, MOST_PIECES = 16, 4000
 
 
 @dataclass(frozen=True, eq=False)
@@ -280,15 +282,30 @@ def _onto(corners: Floats, bends: Floats, plan: Floats) -> tuple[Floats, Floats]
 
 
 def _hole(site: Site, hole: Hole, corners: Floats, bends: Floats, thickness: float) -> HoleTrack | None:
-    along, beside = _onto(corners, bends, hole.xyz[:, :2])
-    near = beside <= thickness / 2
-    if near.sum() < 2:
+    track, beside = _near(hole.xyz, corners, bends, thickness)
+    if len(track) < 2:
         return None
     intervals: list[Interval] = []
     for one in hole_intervals(site, hole):
-        forward, aside = _onto(corners, bends, one.xyz[:, :2])
-        shown = aside <= thickness / 2
-        if shown.sum() >= 2:
-            intervals.append(Interval(one.code, np.column_stack([forward[shown], one.xyz[shown, 2]]), one.table))
-    track = np.column_stack([along[near], hole.xyz[near, 2]])
-    return HoleTrack(hole.name, track, float(beside[near].min()), tuple(intervals))
+        part, _ = _near(one.xyz, corners, bends, thickness)
+        if len(part) >= 2:
+            intervals.append(Interval(one.code, part, one.table))
+    return HoleTrack(hole.name, track, beside, tuple(intervals))
+
+
+def _near(xyz: Floats, corners: Floats, bends: Floats, thickness: float) -> tuple[Floats, float]:
+    """Return distance and elevation (k, 2) of the part of a path within the thickness, and how near it comes, metres.
+
+    An inclined hole may have no vertex there: it is looked at in pieces shorter than the section is thick.
+    """
+    length = np.linalg.norm(np.diff(xyz, axis=0), axis=1)
+    pieces = max(float(thickness) / PIECES, float(length.sum()) / MOST_PIECES)
+    count = np.maximum(np.ceil(length / pieces), 1).astype(int) if pieces > 0 else np.ones(len(length), int)
+    share = np.concatenate([*(k + np.arange(n) / n for k, n in enumerate(count.tolist())), [len(length)]])
+    fine = np.column_stack([np.interp(share, np.arange(len(xyz)), column) for column in xyz.T])
+    along, beside = _onto(corners, bends, fine[:, :2])
+    near = beside <= thickness / 2
+    # Of the pieces only those stay at which the path enters and leaves.
+    ends = near & ~(np.r_[False, near[:-1]] & np.r_[near[1:], False])
+    kept = near & ((share == np.round(share)) | ends)
+    return np.column_stack([along[kept], fine[kept, 2]]), float(beside.min())

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from geofit.data.points import PointSet
 from geofit.data.prediction import Suggestion, Uncertainty
 from geofit.data.settings import FitSettings
-from geofit.data.site import Site
+from geofit.data.site import Ground, Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.cloud import PointCloud
 from geofit.gui.view3d.drawn import Drawn, drawn_of
@@ -32,6 +32,7 @@ from geofit.gui.view3d.stage import Stage
 from geofit.project.listing import Listing
 from geofit.report.style import horizon_colours
 from geofit.site.hole_logs import log_files
+from geofit.surfaces.below_ground import below_ground
 
 __all__ = ["Contents"]
 
@@ -318,6 +319,12 @@ class Contents:
         if by == "thickness":
             below = next_below(self.surfaces[name], coarse, list(self.surfaces.values()))
             if below is not None:
-                rest = [s.xyz[:, 2] - below.elevation(s.xyz[:, 0], s.xyz[:, 1]) for s in (fine, coarse)]
-                return rest[0], rest[1]
+                ground = None if self.site is None else self.site.ground
+                return _thickness(fine.xyz, below, ground), _thickness(coarse.xyz, below, ground)
         return None
+
+
+def _thickness(xyz: Floats, below: HorizonFit, ground: Ground | None) -> Floats:
+    """Return how thick the rock under a surface's vertices (n, 3) is down to the horizon below, metres."""
+    x, y, z = xyz.T
+    return np.asarray(below_ground(z, x, y, ground) - below_ground(below.elevation(x, y), x, y, ground))

@@ -71,6 +71,22 @@ def test_a_horizon_eroded_before_its_cover_was_laid_down_is_no_failure(tmp_path)
     assert check.text.code == "site.holes-pass-cover"
 
 
+def test_a_horizon_cut_off_by_an_unconformity_is_no_failure(tmp_path):
+    """Z05 logs gravel, the younger U down to 50 m, and C: the surface passes it at 40 m, within U."""
+    holes = [[(10, "Q"), (20, "U"), (40, "B"), (60, "C")]] * 16
+    holes[5] = [(10, "Q"), (50, "U"), (70, "C")]
+    site_of(tmp_path, holes)
+    file = tmp_path / "site.toml"
+    alone = file.read_text(encoding="utf-8")
+    upper = '[[horizon]]\nname = "U/B"\nbase = "U"\n'
+    for order, passed in (("", False), ('[site]\norder = ["U/B", "B/C"]\n', None)):
+        file.write_text(order + alone + upper, encoding="utf-8")
+        surface = fit_site(read_site(file), ["B/C"]).surfaces["B/C"]
+        (check,) = [one for one in surface.accuracy.checks if one.name == "contacts"]
+        assert (check.passed, check.value) == (passed, 1.0)
+    assert check.text.code == "site.holes-pass-cover"
+
+
 def test_a_part_without_a_log_is_not_asked(tmp_path):
     site_of(tmp_path, [*[WHOLE] * 5, [(30, "A"), (70, "C")], *[WHOLE] * 10])
     log = (tmp_path / "log.csv").read_text(encoding="utf-8")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -79,6 +80,27 @@ def test_holes_within_the_thickness_have_their_intervals(site, surface):
     assert lithologies([view]) == ("clay", "rock")
     near = np.abs(site.horizons["low"].xyz[:, 1] - 100) <= 10
     assert len(view.points["low"]) == near.sum()
+
+
+def test_an_inclined_hole_is_shown_where_it_passes_the_section(site, surface):
+    """A straight hole has a vertex at its mouth and its end alone: both are 100 m off the section that it passes."""
+    depth = np.array([0.0, 200.0])
+    across = Hole("X", "borehole", depth, np.array([[80.0, 0.0, 100.0], [120.0, 200.0, 0.0]]))
+    log = IntervalLog(
+        "lith.csv", np.array(["X", "X"]), np.array([0.0, 100.0]), np.array([100.0, 200.0]), np.array(["clay", "rock"]),
+        np.array([2, 3]),
+    )  # fmt: skip
+    inclined = replace(site, holes=(across,), boreholes=(LoggedHoles({}, {"X": 200.0}, (log,)),))
+    (hole,) = section_view(inclined, {"low": surface}, LINE, 20.0).holes
+    assert hole.beside == pytest.approx(0.0, abs=1.0)
+    # It is within 10 m of the line for 20 m of northing, a tenth of its way.
+    np.testing.assert_allclose(hole.track, [[98, 55], [102, 45]], atol=0.8)
+    assert [interval.code for interval in hole.intervals] == ["clay", "rock"]
+    np.testing.assert_allclose(hole.intervals[0].track, [[98, 55], [100, 50]], atol=0.8)
+    # One that starts within the section and leaves it is shown as far as it is within.
+    out = replace(inclined, holes=(replace(across, xyz=np.array([[100.0, 100.0, 100.0], [100.0, 300.0, 0.0]])),))
+    (hole,) = section_view(out, {"low": surface}, LINE, 20.0).holes
+    np.testing.assert_allclose(hole.track, [[100, 100], [100, 95]], atol=0.8)
 
 
 def test_a_polyline_counts_the_distance_round_its_corners(site, surface):
