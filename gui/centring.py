@@ -39,6 +39,11 @@ class Centring(QObject):
                 return True
         return super().eventFilter(watched, event)
 
+    def holds(self, widget: QWidget | None) -> str | None:
+        """Return the name of the panel in the middle if a widget is in it."""
+        inside = widget is not None and self.frame is not None and self.frame.isAncestorOf(widget)
+        return self.name if inside else None
+
     def close(self) -> None:
         """Put a panel back, and listen no more: docks that are being destroyed still send events."""
         self.back()

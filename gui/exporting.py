@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,14 +13,15 @@ from PySide6.QtWidgets import QWidget
 
 from geofit.data.errors import GeofitError
 from geofit.data.files import file_stems
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.activity import Activity
 from geofit.gui.preferences import Preferences
 from geofit.gui.save_file import ask_save_file
 from geofit.gui.showing import Showing
+from geofit.gui.translate import translated
 from geofit.gui.workspace import Workspace
-from geofit.io.export.write import FORMATS
+from geofit.io.export.write import FORMATS, renamed, untrimmed
 from geofit.project.document import Document
 from geofit.project.export_task import export_surfaces
 from geofit.project.interventions import interventions_of
@@ -103,7 +104,12 @@ class Delivering(QObject):
         # The patches are enough for every format; what stands behind them need not travel.
         bare = {name: surface.with_(model=None) for name, surface in surfaces.items()}
         title = self.tr("Export {name}").format(name=target.name)
-        self._activity.do(title, export_surfaces, bare, to, target, options, on_done=self._written, in_process=True)
+        notes = [*untrimmed(bare, to), *renamed(bare, to)]
+
+        def written(files: list[Path]) -> None:
+            self._written(files, notes)
+
+        self._activity.do(title, export_surfaces, bare, to, target, options, on_done=written, in_process=True)
 
     def section_sheet(self) -> None:
         """Ask for sections and a title block, and write the sections to scale."""
@@ -215,8 +221,11 @@ class Delivering(QObject):
         """Return where files go unless somebody says otherwise: beside the project."""
         return self._document.folder or Path(self._preferences.folder)
 
-    def _written(self, files: list[Path]) -> None:
+    def _written(self, files: list[Path], notes: Sequence[Message] = ()) -> None:
+        """Tell of files, and of what they have otherwise than the horizons."""
         names = ", ".join(str(file.resolve()) for file in files)
-        self.reported.emit(self.tr("Wrote {names}.").format(names=names))
+        self.reported.emit(" ".join([self.tr("Wrote {names}.").format(names=names), *map(translated, notes)]))
+        for note in notes:
+            _LOG.warning(note)
         for file in files:
             _LOG.info(message("gui.log-file-written", "Wrote {file}", file=str(file.resolve())))

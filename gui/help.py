@@ -3,54 +3,65 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
-from PySide6.QtCore import QObject, QUrl
-from PySide6.QtGui import QDesktopServices, QKeySequence, QShortcut
+from PySide6.QtCore import QObject
+from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QApplication, QDialog, QMenuBar, QMessageBox, QWidget
+from shiboken6 import isValid
 
 from geofit import __version__
 from geofit.data.site import Site
+from geofit.gui.dialogs.help_page import HelpPage
 from geofit.gui.dialogs.issues import IssuesDialog
 from geofit.gui.dialogs.preferences import PreferencesDialog
 from geofit.gui.dialogs.shortcuts import ShortcutsDialog
 from geofit.gui.dialogs.system_report import SystemReport
+from geofit.gui.help_places import PAGES, PLACE_OF_DIALOG, PLACE_OF_PANEL, TUTORIAL
 from geofit.gui.preferences import Preferences
 from geofit.gui.view3d.mouse import Scheme
 
 __all__ = ["Help"]
 
-#: The pages in a checkout; an installed package has the short form of the tutorial below.
-PAGES = Path(__file__).resolve().parents[1] / "docs"
-#: Pages of dialogs, by their class; all others have the tutorial.
-_PAGE_OF = {
-    "ImportWizard": "formats_in", "IssuesDialog": "formats_in", "RockVolumeDialog": "formats_in",
-    "SurveyDialog": "formats_in", "ExportDialog": "formats_out", "BodyStepDialog": "formats_out",
-    "SectionSheetDialog": "formats_out", "PlanSheetDialog": "formats_out", "CompareDialog": "settings",
-}  # fmt: skip
+#: Property of dialogs in which F1 helps.
+_ANSWERED = "geofit answered"
 
 
 class Help(QObject):
     """Shows what explains."""
 
-    def __init__(self, window: QWidget) -> None:
+    def __init__(self, window: QWidget, panel: Callable[[], str]) -> None:
+        """``panel()`` is the name of the panel that has the keyboard."""
         super().__init__(window)
-        self._window = window
+        self._window, self._panel = window, panel
+        self._page: HelpPage | None = None
+        app = QApplication.instance()
+        assert isinstance(app, QApplication)
+        app.focusChanged.connect(self._answer)
 
-    def answer(self, dialog: QDialog) -> None:
-        """Let F1 open the page of a dialog, which the keys of the main window do not reach."""
-        page = _PAGE_OF.get(type(dialog).__name__, "tutorial")
-        QShortcut(QKeySequence("F1"), dialog).activated.connect(lambda: self.page(page))
+    def close(self) -> None:
+        """Close the page, and answer no more."""
+        app = QApplication.instance()
+        assert isinstance(app, QApplication)
+        app.focusChanged.disconnect(self._answer)
+        self._close_page()
 
     def tutorial(self) -> None:
-        """Open the tutorial."""
-        self.page("tutorial")
+        """Open the tutorial at its beginning."""
+        self.page(TUTORIAL)
 
-    def page(self, name: str) -> None:
-        """Open a page, or tell the way through the application in short."""
-        page = PAGES / f"{name}.md"
-        if page.is_file():
-            QDesktopServices.openUrl(QUrl.fromLocalFile(str(page)))
+    def on_panel(self) -> None:
+        """Open the place about the panel that has the keyboard."""
+        self.page(PLACE_OF_PANEL.get(self._panel(), TUTORIAL))
+
+    def page(self, place: str) -> None:
+        """Open a page at a heading, or tell the way through the application in short."""
+        if (PAGES / place.partition("#")[0]).is_file():
+            # A child of the dialog in front, which would not let any other window be used.
+            over = QApplication.activeModalWidget() or self._window
+            if self._page is None or not isValid(self._page) or self._page.parentWidget() is not over:
+                self._close_page()
+                self._page = HelpPage(over)
+            self._page.open_place(place)
             return
         self._box(
             self.tr("The geofit workflow"),
@@ -117,6 +128,29 @@ class Help(QObject):
                 "solids by OpenCASCADE (LGPL-2.1 with exception).</p>"
             ).format(version=__version__),
         )
+
+    def _answer(self) -> None:
+        """Let F1 help in a dialog when it gets the keyboard: keys of the main window do not reach it.
+
+        A dialog may belong to a panel or to another dialog, so that nobody else hears of all of them.
+        """
+        dialog = QApplication.activeWindow()
+        if not isinstance(dialog, QDialog) or isinstance(dialog, HelpPage) or dialog.property(_ANSWERED):
+            return
+        over: QWidget | None = dialog
+        while over is not None and over is not self._window:
+            over = over.parentWidget()
+        if over is None:
+            return
+        dialog.setProperty(_ANSWERED, True)
+        place = PLACE_OF_DIALOG.get(type(dialog).__name__, TUTORIAL)
+        QShortcut(QKeySequence("F1"), dialog).activated.connect(lambda: self.page(place))
+
+    def _close_page(self) -> None:
+        page, self._page = self._page, None
+        if page is not None and isValid(page):  # it goes with the dialog that it was opened over
+            page.close()
+            page.deleteLater()
 
     def _box(self, title: str, text: str) -> None:
         over = QApplication.activeModalWidget() or self._window

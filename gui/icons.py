@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
-from PySide6.QtCore import QByteArray, QSize
-from PySide6.QtGui import QColor, QGuiApplication, QIcon, QPainter, QPalette, QPixmap
+from PySide6.QtCore import QByteArray, QSize, Qt
+from PySide6.QtGui import QColor, QGuiApplication, QIcon, QImage, QPainter, QPalette, QPixmap
 from PySide6.QtSvg import QSvgRenderer
 
 __all__ = ["application_icon", "palette_icon"]
@@ -38,10 +39,17 @@ def application_icon() -> QIcon:
 
 
 def _pixmap(name: str, size: int, colour: QColor) -> QPixmap:
-    text = (FOLDER / f"{name}.svg").read_text(encoding="utf-8").replace("currentColor", colour.name())
-    pixmap = QPixmap(QSize(size, size))
-    pixmap.fill(QColor(0, 0, 0, 0))
-    painter = QPainter(pixmap)
+    return QPixmap.fromImage(_image(name, size, colour.name()))
+
+
+# A window has some 240 of them, and the next window, in another language, the same. An image may outlive the
+# application, unlike a pixmap.
+@cache
+def _image(name: str, size: int, colour: str) -> QImage:
+    text = (FOLDER / f"{name}.svg").read_text(encoding="utf-8").replace("currentColor", colour)
+    image = QImage(QSize(size, size), QImage.Format.Format_ARGB32_Premultiplied)
+    image.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(image)
     QSvgRenderer(QByteArray(text.encode())).render(painter)
     painter.end()
-    return pixmap
+    return image

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QChildEvent, QEvent, QSize, Signal
+from PySide6.QtCore import QChildEvent, QEvent, QSize, Qt, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
-from PySide6.QtWidgets import QApplication, QDialog, QInputDialog, QMainWindow, QTabBar
+from PySide6.QtWidgets import QApplication, QInputDialog, QMainWindow, QTabBar
 
 from geofit.gui.actions import Actions
 from geofit.gui.activity import Activity
@@ -45,8 +45,8 @@ __all__ = ["MainWindow"]
 
 #: Actions that need no open site.
 _ALWAYS = {
-    "new", "open", "sample", "quit", "preferences", "tutorial", "shortcuts", "rock_volume", "survey", "system_report",
-    "about",
+    "new", "open", "sample", "quit", "preferences", "help", "tutorial", "shortcuts", "rock_volume", "survey",
+    "system_report", "about",
 }  # fmt: skip
 #: What needs a horizon: a site may have bodies alone.
 _OF_HORIZONS = {"fit", "fit_all", "order", "exclude", "faded"}
@@ -101,7 +101,7 @@ class MainWindow(QMainWindow):
         self.bodies = Bodies(session, self.activity, self.fitting, self.showing, self.panels, preferences, self)
         self.morphing = Morphing(session.document, self.activity, self.fitting, self.bodies, self.panels, self)
         self.surveys = Surveys(session.document, self.activity, self.bodies, self)
-        self.help = Help(self)
+        self.help = Help(self, self._panel_in_use)
         self._connect_actions()
         self._connect_panels()
         self._connect_messages()
@@ -165,7 +165,7 @@ class MainWindow(QMainWindow):
         finish_all(helpers=False)
         for part in (
             self.comparing_fits, self.showing, self.selecting, self.fitting, self.living, self.bodies, self.morphing,
-            self.surveys, self.delivering,
+            self.surveys, self.delivering, self.help,
         ):  # fmt: skip
             part.close()
         for end in self._ends:
@@ -197,15 +197,15 @@ class MainWindow(QMainWindow):
         return False
 
     def childEvent(self, event: QChildEvent) -> None:  # noqa: N802
-        """Draw the tabs of docks close together, in each bar that Qt makes for them; let F1 help in each dialog."""
+        """Draw the tabs of docks close together and whole, in each bar that Qt makes for them."""
         super().childEvent(event)
         if event.type() != QEvent.Type.ChildPolished:
             return
         child = event.child()
         if isinstance(child, QTabBar):
             child.setStyle(self._tab_style)
-        elif isinstance(child, QDialog):
-            self.help.answer(child)
+            # Where the window is too narrow for all of them the bar scrolls; Qt would cut their names first.
+            child.setElideMode(Qt.TextElideMode.ElideNone)
 
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Draw in the colours of another theme."""
@@ -263,6 +263,7 @@ class MainWindow(QMainWindow):
             "worst": self.selecting.go_to_worst,
             "exclude": lambda: self._exclude(self.selecting.rows()),
             "stop": self.activity.cancel,
+            "help": self.help.on_panel,
             "tutorial": self.help.tutorial,
             "shortcuts": lambda: self.help.shortcuts(self.menuBar()),
             "rock_volume": self.help.rock_volume,
@@ -393,6 +394,11 @@ class MainWindow(QMainWindow):
         self.actions_["stop"].setEnabled(self.activity.busy)
         self.actions_.exaggerations.setEnabled(is_open)
         self.menus.panels.setEnabled(is_open)
+
+    def _panel_in_use(self) -> str:
+        if self.panels.centre.currentWidget() is self.panels.start:
+            return "start"
+        return self.panels.centring.holds(QApplication.focusWidget()) or self.panels.reach.place()
 
     def _horizon(self) -> str | None:
         return self.session.document.selection.horizon

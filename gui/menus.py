@@ -54,7 +54,7 @@ class Menus(QObject):
         horizon = "fit fit_all | build_horizon | examine compare_fits worst | order check_order separate | stop"
         self._menu(bar.addMenu(self.tr("Hori&zon")), horizon)
         self._menu(bar.addMenu(self.tr("&Tools")), "measure section | rock_volume survey")
-        self._menu(bar.addMenu(self.tr("&Help")), "tutorial shortcuts | system_report about")
+        self._menu(bar.addMenu(self.tr("&Help")), "help tutorial shortcuts | system_report about")
         self.tools = self._tool_bar()
 
     def _connect(self, stack: QUndoStack) -> None:

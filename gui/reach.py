@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QApplication, QDockWidget, QWidget
+from PySide6.QtWidgets import QApplication, QDockWidget, QTabBar, QWidget
 
 __all__ = ["Reach"]
 
@@ -29,6 +29,15 @@ class Reach(QObject):
         focused = QApplication.focusWidget()
         now = next((k for k, place in enumerate(places) if _holds(place, focused)), len(places) - 1)
         self._enter(places[(now + by) % len(places)])
+
+    def place(self) -> str:
+        """Return the name of the dock that has the keyboard, by one of its fields or by its tab; else ``view``."""
+        focused = QApplication.focusWidget()
+        title = focused.tabText(focused.currentIndex()) if isinstance(focused, QTabBar) else None
+        for name, dock in self._docks.items():
+            if _holds(dock, focused) or (title == dock.windowTitle() and _in_front(dock)):
+                return name
+        return "view"
 
     def behind(self, widget: QWidget | None) -> bool:
         """Whether a widget is in a dock that another one covers in their tabs."""

@@ -16,8 +16,12 @@ from geofit.report.style import FAIL, MUTED, TEXT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.text import Text
 
 __all__ = ["uncertainty_map"]
+
+#: Size of the cross at a suggested hole, points.
+_CROSS = 6.0
 
 Floats = NDArray[np.float64]
 
@@ -33,11 +37,12 @@ def uncertainty_map(axes: Axes, result: HorizonResult, t: Language = EN) -> None
     found = result.prediction
     if found is None or found.uncertainty is None:
         raise ValueError(f"The standard deviation of horizon '{result.name}' was not examined.")
-    _shades(axes, found.uncertainty, t)
+    labels = _shades(axes, found.uncertainty, t)
     frame = found.uncertainty.frame
     points = _flat(result, result.surface.points.xyz, frame)
     axes.plot(*points.T, ".", ms=2.2, color=TEXT, alpha=0.6, label=t("data points"), zorder=3)
-    _places(axes, _flat(result, np.array([(s.x, s.y, s.z) for s in found.suggestions]).reshape(-1, 3), frame), t)
+    places = _flat(result, np.array([(s.x, s.y, s.z) for s in found.suggestions]).reshape(-1, 3), frame)
+    _places(axes, places, labels, t)
     axes.set_title(t("Standard deviation of the surface"))
     along, up = {
         "map": (t("Easting, m"), t("Northing, m")),
@@ -59,7 +64,8 @@ def _flat(result: HorizonResult, xyz: Floats, frame: FrameKind) -> Floats:
     return np.column_stack([foot.u, foot.v])
 
 
-def _shades(axes: Axes, field: Uncertainty, t: Language) -> None:
+def _shades(axes: Axes, field: Uncertainty, t: Language) -> list[Text]:
+    """Draw the shades and the lines; return the labels of the lines."""
     from matplotlib.colors import LinearSegmentedColormap
     from matplotlib.ticker import MaxNLocator
 
@@ -70,22 +76,27 @@ def _shades(axes: Axes, field: Uncertainty, t: Language) -> None:
     levels = MaxNLocator(6).tick_values(0.0, max(top, 1e-9))
     shades = axes.contourf(field.x, field.y, sd, levels=list(levels), cmap=colours, zorder=0)
     lines = axes.contour(field.x, field.y, sd, levels=list(levels), colors="#8a7a5c", linewidths=0.5, zorder=1)
-    axes.clabel(lines, fmt="%g", fontsize=6, colors=MUTED)
+    labels = axes.clabel(lines, fmt="%g", fontsize=6, colors=MUTED)
     scale = axes.inset_axes((1.03, 0.0, 0.035, 0.55))
     bar = axes.figure.colorbar(shades, cax=scale)
     bar.outline.set_visible(False)
     scale.tick_params(length=0, pad=2)
     scale.set_title(t("m"), fontsize=7.5, fontweight="normal", color=MUTED, pad=4)
+    return list(labels)
 
 
-def _places(axes: Axes, places: Floats, t: Language) -> None:
+def _places(axes: Axes, places: Floats, labels: list[Text], t: Language) -> None:
     from matplotlib.patheffects import withStroke
+
+    from geofit.report.evading import EvadingWord
 
     if not len(places):
         return
-    axes.plot(*places.T, "x", ms=6, mew=1.6, color=FAIL, label=t("suggested hole"), zorder=4)
-    for i, place in enumerate(places, 1):
-        axes.annotate(
-            str(i), (place[0], place[1]), xytext=(4, 3), textcoords="offset points", size=7.5, weight="bold",
-            color=FAIL, path_effects=[withStroke(linewidth=2, foreground="white")], zorder=5,
+    axes.plot(*places.T, "x", ms=_CROSS, mew=1.6, color=FAIL, label=t("suggested hole"), zorder=4)
+    texts = list(labels)
+    for i, (x, y) in enumerate(places.tolist(), 1):
+        number = EvadingWord(
+            axes, str(i), (x, y), texts, places, _CROSS, size=7.5, weight="bold", color=FAIL,
+            path_effects=[withStroke(linewidth=2, foreground="white")], zorder=5,
         )  # fmt: skip
+        texts.append(number)

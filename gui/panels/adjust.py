@@ -68,8 +68,7 @@ class AdjustPanel(QWidget):
         scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         # What is in it is never cut off at the right: there is no bar to reach it by.
         scroll.setMinimumWidth(page.minimumSizeHint().width())
-        self.pages = Placeholder(scroll)
-        self.setLayout(self.pages)
+        self.pages = Placeholder(scroll, self)
         self._pause = QTimer(self, singleShot=True, interval=PAUSE)
         self._pause.timeout.connect(self._want)
         self.apply_button.clicked.connect(self.apply)

@@ -235,8 +235,7 @@ class BodiesPanel(QWidget):
             outer.addLayout(row)
         outer.addWidget(scrolling(form), 1)
         outer.addLayout(buttons)
-        self.pages = Placeholder(content)
-        self.setLayout(self.pages)
+        self.pages = Placeholder(content, self)
 
     def _check(self) -> None:
         source = self.source.source()

@@ -71,8 +71,7 @@ class ChangesPanel(QWidget):
         inner = QVBoxLayout(content)
         inner.setContentsMargins(8, 8, 8, 8)
         inner.addWidget(self.parts)
-        self.pages = Placeholder(content)
-        self.setLayout(self.pages)
+        self.pages = Placeholder(content, self)
         self.pages.button.clicked.connect(self._press)
         self.table.chosen.connect(self._tell_place)
         self._button = self.add_requested.emit

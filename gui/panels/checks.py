@@ -77,8 +77,7 @@ class ChecksPanel(QWidget):
         column = QVBoxLayout(content)
         column.setContentsMargins(8, 8, 8, 8)
         column.addWidget(self.tree)
-        self.pages = Placeholder(content)
-        self.setLayout(self.pages)
+        self.pages = Placeholder(content, self)
         self._rows: list[QTreeWidgetItem] = []
         # A panel that is hidden is filled before the tree has its width.
         self.tree.resized.connect(self._fit_columns)

@@ -37,8 +37,7 @@ class HistogramPanel(QWidget):
         self.canvas = PlotCanvas(self._paint, self._arrange)
         self.canvas.setAccessibleName(self.tr("Histogram and normal plot of the residuals"))
         column.addWidget(self.canvas)
-        self.pages = Placeholder(content)
-        self.setLayout(self.pages)
+        self.pages = Placeholder(content, self)
         self._result: HorizonResult | None = None
         self._texts: list[tuple[str, str, tuple[float, float]]] = []
         self.show_surface(None)

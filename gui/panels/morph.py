@@ -281,7 +281,6 @@ class MorphPanel(QWidget):
         parts.addWidget(right)
         parts.setSizes([280, 540])
         parts.setStretchFactor(1, 1)
-        self.pages = Placeholder(parts)
+        self.pages = Placeholder(parts, self)
         for button in (self.add, self.horizons):
             self.pages.offer(button)
-        self.setLayout(self.pages)

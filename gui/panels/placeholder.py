@@ -9,10 +9,11 @@ __all__ = ["Placeholder"]
 
 
 class Placeholder(QStackedLayout):
-    """A layout of two pages: the panel's content, or a sentence with an optional button."""
+    """The layout of a panel, of two pages: the panel's content, or a sentence with an optional button."""
 
-    def __init__(self, content: QWidget) -> None:
-        super().__init__()
+    def __init__(self, content: QWidget, panel: QWidget) -> None:
+        # Qt shows the first page at once: without a panel around it, as a window of its own that flashes up.
+        super().__init__(panel)
         page = QWidget()
         inner = QVBoxLayout(page)
         inner.setContentsMargins(16, 16, 16, 16)

@@ -81,8 +81,7 @@ class PlanPanel(QWidget):
         self._parts.addWidget(side)
         self._parts.addWidget(self.view, 1)
         self._side = side
-        self.pages = Placeholder(content)
-        self.setLayout(self.pages)
+        self.pages = Placeholder(content, self)
         for word in ("auto", "all", "none"):
             self.buttons[word].clicked.connect(lambda _, word=word: self._choose_word(word))
         self.buttons["draw"].toggled.connect(self._draw)

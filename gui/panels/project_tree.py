@@ -76,8 +76,7 @@ class ProjectTree(QWidget):
         self.search.setPlaceholderText(self.tr("Filter by name"))
         self.search.setAccessibleName(self.tr("Filter of the project tree"))
         content = QWidget()
-        self.pages = Placeholder(content)
-        self.setLayout(self.pages)
+        self.pages = Placeholder(content, self)
         # A view that is destroyed asks its model, and a filter its source: what was made first is destroyed first.
         self.view = RowView(content)
         self.shown = QSortFilterProxyModel(self)

@@ -42,8 +42,7 @@ class SeamTable(QWidget):
         column.setSpacing(6)
         column.addWidget(self.head)
         column.addWidget(self.table, 1)
-        self.pages = Placeholder(content)
-        self.setLayout(self.pages)
+        self.pages = Placeholder(content, self)
         self.table.chosen.connect(self.seam_chosen)
         self.show_surface(None)
 

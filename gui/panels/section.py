@@ -92,8 +92,7 @@ class SectionPanel(QWidget):
         column.addLayout(tools)
         column.addWidget(self.canvas, 1)
         column.addWidget(self.state)
-        self.pages = Placeholder(content)
-        self.setLayout(self.pages)
+        self.pages = Placeholder(content, self)
         self.data: SectionData | None = None
         self._surfaces: Mapping[str, HorizonFit] = {}
         self._uncertainty: Mapping[str, Uncertainty] = {}

@@ -325,6 +325,6 @@ class Canvas(QtInteractor):
         self._still.stop()
         self._fly.stop()
         super().close()
-        # Qt deletes the surface of OpenGL with the widget. PySide cannot know that, since QSurface is no QObject: a
+        # Qt deletes the surface of OpenGL with the widget. PySide does not learn of that, as it would of a QObject: a
         # wrapper that outlives it would be taken for whatever object Qt makes at that address next.
         self._forget_context()  # type: ignore[no-untyped-call]

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import gc
 import os
+import pickle
 import shutil
 import sys
 import threading
+from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 import virtual_screen
+
+SAMPLE_DATA = Path(__file__).parents[2] / "sample_data"
 
 
 def _display() -> str | None:
@@ -181,13 +186,49 @@ def app(qtbot, monkeypatch, qapp, freeze_modules):
 
 
 @pytest.fixture(scope="session")
-def sample(tmp_path_factory):
-    """The sample site's folder."""
-    from geofit.sample import write_site
+def results_of_processes():
+    """What tasks in processes have returned, pickled as a process returns it, by the name of their step."""
+    return {}
 
-    folder = tmp_path_factory.mktemp("sample")
-    write_site(folder)
-    return folder
+
+@pytest.fixture
+def once(monkeypatch, results_of_processes):
+    """Context of a step whose tasks in processes run for the first test only; the application does all else again.
+
+    For what is prepared and not tested: to fit a body takes seconds.
+    """
+    from geofit.gui import activity
+
+    @contextmanager
+    def context(step):
+        known = results_of_processes.get(step)
+        left, new = iter(known or ()), []
+
+        def start(parent, function, *args, on_done, **more):
+            if known is not None:
+                result = next(left)
+                return activity.run(parent, lambda *_, progress: pickle.loads(result), on_done=on_done, **more)
+
+            def keep(result):
+                new.append(pickle.dumps(result))
+                on_done(result)
+
+            return in_process(parent, function, *args, on_done=keep, **more)
+
+        in_process = activity.run_in_process
+        with monkeypatch.context() as patch:
+            patch.setattr(activity, "run_in_process", start)
+            yield
+        if known is None:
+            results_of_processes[step] = new
+
+    return context
+
+
+@pytest.fixture(scope="session")
+def sample(tmp_path_factory):
+    """The sample site's folder, copied: write_site() takes seconds for the same (see sample/test_sample.py)."""
+    return shutil.copytree(SAMPLE_DATA, tmp_path_factory.mktemp("sample"), dirs_exist_ok=True)
 
 
 @pytest.fixture

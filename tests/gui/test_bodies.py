@@ -36,9 +36,10 @@ def opened(app, sample):
 
 
 @pytest.fixture
-def with_ore(opened):
-    opened.bodies.fit("", ORE, BodySettings(realizations=20))
-    opened.idle()
+def with_ore(opened, once):
+    with once("fit ORE"):
+        opened.bodies.fit("", ORE, BodySettings(realizations=20))
+        opened.idle()
     return opened
 
 
@@ -415,14 +416,15 @@ def test_a_saved_project_opens_with_its_bodies_and_tells_read_from_made_again(wi
     assert not with_ore.document.dirty
 
 
-def test_bodies_whose_data_changed_stay_as_they_were_saved_and_say_so(app, tmp_path, sample):
+def test_bodies_whose_data_changed_stay_as_they_were_saved_and_say_so(app, tmp_path, sample, once):
     folder = tmp_path / "site"
     shutil.copytree(sample, folder)
     app.window.files.open(folder / "site.toml")
     app.idle()
     app.panels, app.bodies = app.window.panels, app.window.bodies
-    app.bodies.fit("", ORE, BodySettings(realizations=20))
-    app.idle()
+    with once("fit ORE"):
+        app.bodies.fit("", ORE, BodySettings(realizations=20))
+        app.idle()
     app.window.files.save_to(folder / "dam.geofit")
     app.idle()
     log = folder / "bodies" / "lithology.csv"
@@ -464,7 +466,7 @@ def test_a_body_of_few_contacts_warns_of_its_band_in_the_panel(opened, tmp_path)
 
 
 @pytest.fixture
-def lens(app, tmp_path):
+def lens(app, tmp_path, once):
     """A site whose body is fitted to a file of points, which changes then; returns the file's path."""
     rng = np.random.default_rng(3)
     normal = rng.normal(size=(80, 3))
@@ -479,8 +481,9 @@ def lens(app, tmp_path):
     app.window.files.open(tmp_path / "site.toml")
     app.idle()
     app.panels, app.bodies = app.window.panels, app.window.bodies
-    app.bodies.fit("lens", SurfacePicks("lens.csv"), BodySettings(realizations=20))
-    app.idle()
+    with once("fit lens"):
+        app.bodies.fit("lens", SurfacePicks("lens.csv"), BodySettings(realizations=20))
+        app.idle()
     app.bodies.watch.look()
     app.idle()
     assert not app.bodies.showing.stale("lens")

@@ -169,15 +169,16 @@ def bodies_alone(app, sample, tmp_path):
     app.idle()
 
 
-def test_a_site_of_bodies_alone(app, bodies_alone, tmp_path):
+def test_a_site_of_bodies_alone(app, bodies_alone, tmp_path, once):
     document, panels = app.document, app.window.panels
     assert document.is_open
     assert not document.horizons
     assert panels.bodies.source.codes.count() >= 3
     assert app.window.actions_["save"].isEnabled()
     assert not app.window.actions_["fit"].isEnabled()
-    app.window.bodies.fit("", Intervals(("ORE",)), panels.bodies.form.edited())
-    app.idle()
+    with once("fit ORE alone"):
+        app.window.bodies.fit("", Intervals(("ORE",)), panels.bodies.form.edited())
+        app.idle()
     assert document.body("ORE").accuracy.passed
     app.window.files.save_to(tmp_path / "work.geofit")
     app.idle()
@@ -188,9 +189,10 @@ def test_a_site_of_bodies_alone(app, bodies_alone, tmp_path):
     app.window.grab().save(str(tmp_path / "alone.png"))
 
 
-def test_the_files_of_a_site_of_bodies_alone_are_read_again(app, bodies_alone, tmp_path):
-    app.window.bodies.fit("", Intervals(("ORE",)), app.window.panels.bodies.form.edited())
-    app.idle()
+def test_the_files_of_a_site_of_bodies_alone_are_read_again(app, bodies_alone, tmp_path, once):
+    with once("fit ORE alone"):
+        app.window.bodies.fit("", Intervals(("ORE",)), app.window.panels.bodies.form.edited())
+        app.idle()
     log = tmp_path / "bodies" / "lithology.csv"
     rows = log.read_text(encoding="utf-8").splitlines(keepends=True)
     ore = next(k for k, row in enumerate(rows) if "ORE" in row)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import shutil
 from pathlib import Path
 
 import pytest
+from panel_samples import SITE
 
 from geofit.gui.dialogs.horizon_builder import HorizonBuilder
 from geofit.io.site_file import read_site
@@ -16,9 +18,7 @@ DATA = Path(os.environ.get("GEOFIT_DATA", Path(__file__).parents[3] / "shared" /
 
 @pytest.fixture
 def opened(app, tmp_path):
-    from geofit.sample import write_site
-
-    write_site(tmp_path / "dam")
+    shutil.copytree(SITE.parent, tmp_path / "dam")
     file = tmp_path / "dam" / "site.toml"
     app.desktop.session.begin(read_site(file), file)
     app.idle()

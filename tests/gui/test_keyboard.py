@@ -6,13 +6,12 @@ import re
 import shutil
 from collections import Counter
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 from panel_samples import FAULT, SITE, WITH_PERIPHERY, fitted, sample_site
 from PySide6.QtCore import QPoint, QRect, Qt
-from PySide6.QtGui import QDesktopServices, QKeySequence, QUndoStack
+from PySide6.QtGui import QKeySequence, QUndoStack
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -34,7 +33,6 @@ from PySide6.QtWidgets import (
 from geofit.gui.dialogs.order import OrderDialog
 from geofit.gui.dialogs.survey import SurveyDialog
 from geofit.gui.language import apply_language
-from geofit.gui.main_window import MainWindow
 from geofit.project.commands import SetSurface
 
 #: What a user enters, chooses or presses.
@@ -239,6 +237,12 @@ def failure(_):
     return ErrorDialog("Fit", ValueError("x"))
 
 
+def help_page(_):
+    from geofit.gui.dialogs.help_page import HelpPage
+
+    return HelpPage(None)
+
+
 def steps(_):
     from geofit.gui.dialogs.steps import StepsDialog
 
@@ -272,7 +276,7 @@ DIALOGS = {
     raw: "Open", rock: "Find pores", survey: "Make body", step: "Write", body_step: "Write", report: "Write",
     section_sheet: "Write", plan_sheet: "Write", preferences: "OK", order: "OK", builder: "Add horizon",
     horizon_bodies: "OK", issues: "Close", failure: "Close", steps: "Close", system_report: "Close",
-    recovery: "Bring back", wizard: "Read",
+    recovery: "Bring back", wizard: "Read", help_page: "Close",
 }  # fmt: skip
 
 
@@ -324,28 +328,6 @@ def test_every_page_of_the_import_is_worked_with_the_keyboard(qtbot, tmp_path, c
         dialog.reject()
     finally:
         apply_language("en")
-
-
-@pytest.mark.parametrize(
-    ("make", "page"), [(SurveyDialog, "formats_in"), (OrderDialog, "tutorial"), (MainWindow, "tutorial")]
-)
-def test_f1_opens_the_page_of_a_window(app, qtbot, monkeypatch, make, page):
-    opened = []
-    monkeypatch.setattr(QDesktopServices, "openUrl", lambda url: opened.append(Path(url.toLocalFile())))
-    window = app.window
-    if make is SurveyDialog:
-        window = SurveyDialog(dict, lambda: True, app.window)
-    elif make is OrderDialog:
-        window = OrderDialog(("a", "b"), app.window)
-        window.setModal(True)
-    window.show()
-    window.activateWindow()
-    qtbot.waitUntil(window.isActiveWindow)
-    QTest.keyClick(window, Qt.Key.Key_F1)
-    assert [path.stem for path in opened] == [page]
-    assert opened[0].is_file()
-    if window is not app.window:
-        window.close()
 
 
 @pytest.fixture(params=["en", "zh_CN"])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 from panel_samples import SITE, sample_site
-from PySide6.QtCore import QByteArray, Qt
-from PySide6.QtWidgets import QStyle, QTabBar, QToolBar
+from PySide6.QtCore import QByteArray, QEvent, QObject, Qt
+from PySide6.QtWidgets import QStyle, QTabBar, QToolBar, QToolButton, QWidget
 
 from geofit.data.site import Site
 from geofit.gui.layout import BOTTOM
@@ -108,6 +108,30 @@ def test_the_view_has_most_of_a_small_window(app):
     assert app.window.panels.layout.folded
 
 
+class Windows(QObject):
+    """Hears of each widget that is shown as a window."""
+
+    def __init__(self):
+        super().__init__()
+        self.shown = []
+
+    def eventFilter(self, watched, event):  # noqa: N802
+        if event.type() == QEvent.Type.Show and isinstance(watched, QWidget) and watched.isWindow():
+            self.shown.append(type(watched).__name__)
+        return False
+
+
+def test_no_panel_flashes_up_as_a_window_of_its_own(app, qapp):
+    windows = Windows()
+    qapp.installEventFilter(windows)
+    try:
+        app.desktop.change_language("zh_CN")
+    finally:
+        qapp.removeEventFilter(windows)
+    assert windows.shown == ["MainWindow"]
+    app.desktop.change_language("en")
+
+
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_every_tab_below_the_view_of_a_small_window_can_be_read(app, theme):
     app.window.resize(1280, 800)
@@ -123,6 +147,26 @@ def test_every_tab_below_the_view_of_a_small_window_can_be_read(app, theme):
         name = bar.tabText(k)
         assert bar.tabRect(k).right() < bar.width(), name
         assert bar.fontMetrics().horizontalAdvance(name) + room <= bar.tabRect(k).width(), name
+
+
+@pytest.mark.parametrize("code", ["en", "zh_CN"])
+def test_no_tab_of_a_narrow_window_is_cut_off_and_each_can_be_come_to(app, code):
+    app.desktop.change_language(code)
+    app.window.resize(960, 640)
+    opened(app)
+    app.window.panels.reveal("plan")
+    app.idle()
+    bar = max((bar for bar in app.window.findChildren(QTabBar) if bar.isVisible()), key=QTabBar.count)
+    arrows = [button for button in bar.findChildren(QToolButton) if button.isVisible()]
+    for k in range(bar.count()):
+        name = bar.tabText(k)
+        assert bar.fontMetrics().horizontalAdvance(name) < bar.tabRect(k).width(), name
+        assert bar.tabToolTip(k) == name
+        bar.setCurrentIndex(k)
+        app.qtbot.wait(20)
+        right = min([bar.width(), *(arrow.x() for arrow in arrows)])
+        assert 0 <= bar.tabRect(k).left() < bar.tabRect(k).right() <= right, name
+    app.desktop.change_language("en")
 
 
 def test_a_button_unfolds_a_panel_and_folds_all_away_again(app):

@@ -213,6 +213,20 @@ def test_an_export_replaces_a_file_only_by_consent(app, tmp_path, typed, asked):
     assert file.read_text(encoding="utf-8") != "precious"
 
 
+def test_an_export_tells_which_names_the_format_cannot_write(app, tmp_path):
+    app.window.files.open(site(tmp_path / "one"))
+    app.idle()
+    app.window.fitting.fit("a")
+    app.idle()
+    told = []
+    app.window.delivering.reported.connect(told.append)
+    app.window.delivering.write("iges", tmp_path / "dam.igs", {"覆盖层": app.document.surface("a")})
+    app.idle()
+    (text,) = told
+    assert "dam.igs" in text
+    assert "覆盖层: IGES names are ASCII; in the file it is 'HORIZON'" in text
+
+
 def test_every_dialog_that_saves_asks_the_same_way():
     """Another use of the system's dialog would bring the silent replacement back."""
     gui = Path(save_file.__file__).parent
