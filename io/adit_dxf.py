@@ -34,7 +34,7 @@ def draw_adits(source: Source, journal: Journal, region: Region | None = None) -
     InputError
         If the drawing cannot be read, or no polyline is an adit.
     """
-    entities = open_drawing(source, journal)
+    entities, _ = open_drawing(source, journal)
     chosen, listed = on_layers(entities, source, journal)
     adits: list[Hole] = []
     for entity in chosen:
@@ -90,7 +90,7 @@ def drawn_contacts(
     The contact is the place of the adit's axis nearest in plan to the insertion point. Words that are no
     horizon are notes; a contact farther than 5 m from every adit is listed.
     """
-    entities = open_drawing(source, journal)
+    entities, _ = open_drawing(source, journal)
     chosen, listed = on_layers(entities, source, journal)
     found: list[tuple[str, str, Floats, int]] = []
     for entity in chosen:

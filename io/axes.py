@@ -13,7 +13,7 @@ from geofit.data.messages import Untranslated, message
 from geofit.io.columns import plain_name
 from geofit.io.rows import Rows
 
-__all__ = ["Region", "check_axes", "grown_box", "place_in"]
+__all__ = ["Region", "check_axes", "check_elevations", "grown_box", "place_in"]
 
 Floats = NDArray[np.float64]
 
@@ -31,6 +31,8 @@ OTHER_SYSTEM = 20.0
 EXCHANGED_REACH, STRAY_REACH = 20.0, 4.0
 #: Places of longitude and latitude cover less than this, degrees.
 DEGREES = 10.0
+#: Most elevations of a site that are farther from 0 are none, metres: the crust is half as thick.
+HIGHEST = 1e5
 #: What x and y are called where the header leaves open which is the easting.
 _BARE = {"x", "y", "xcoord", "ycoord", "xcoordinate", "ycoordinate", "x坐标", "y坐标", "坐标x", "坐标y"}
 #: (0, 0) is a placeholder where the places lie farther than this from it, metres.
@@ -128,6 +130,29 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
         )
 
 
+def check_elevations(rows: Rows, z: Floats) -> None:
+    """Warn of elevations (n,) at which there is no rock: another column was taken for them, or another unit."""
+    known = z[rows.ok & np.isfinite(z)]
+    middle = float(np.median(np.abs(known))) if known.size else 0.0
+    if middle <= HIGHEST:
+        return
+    rows.journal.add(
+        "warning",
+        rows.file,
+        message(
+            "io.elevations-not-possible",
+            "The elevations are around {z:.0f} m, more than {most:.0f} m from sea level",
+            z=float(np.median(known)),
+            most=HIGHEST,
+        ),
+        message(
+            "io.check-column-and-unit",
+            "Check that this column contains elevations, not northings or eastings, and their unit.",
+        ),
+        column=rows.table.header[rows.columns["z"]],
+    )
+
+
 def _reject_placeholders(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
     """Reject rows at (0, 0) where the other places are nowhere near: programs write it for a place that is unknown."""
     zero = (x == 0) & (y == 0) & rows.ok
@@ -179,7 +204,8 @@ def _warn_of_digits(rows: Rows, x: Floats, y: Floats) -> None:
     east, north = x[rows.ok], y[rows.ok]
     headers = [rows.table.header[rows.columns[role]] for role in ("x", "y")]
     extent = max(float(np.ptp(east)), float(np.ptp(north)))
-    degrees = np.abs(east).max() <= 180.0 and np.abs(north).max() <= 90.0 and 0 < extent < DEGREES
+    least, most = sorted((float(np.abs(east).max()), float(np.abs(north).max())))
+    degrees = least <= 90.0 and most <= 180.0 and 0 < extent < DEGREES
     if degrees and not any((part == np.round(part, 2)).all() for part in (east, north)):
         rows.journal.add(
             "warning",

@@ -10,7 +10,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.io.sniff import HEAD, decimal_of_groups, decode
+from geofit.io.sniff import HEAD, decimal_of_groups, decode, find_decimal
 
 __all__ = ["BIG", "BigText", "big_text"]
 
@@ -100,9 +100,10 @@ class BigText(Sequence[str]):
 
     def decimal(self, sep: str) -> str:
         """Return the decimal mark that most fractions of the text have (:func:`geofit.io.sniff.find_decimal`)."""
-        if sep == "," or b"," not in self.data:
-            return "."
-        if mark := decimal_of_groups(self.data[:HEAD].decode("utf-8", "replace")):
+        head = self.data[:HEAD].decode("utf-8", "replace")
+        if sep == ",":
+            return find_decimal(head, sep)
+        if mark := decimal_of_groups(head):
             return mark
         from geofit.io.cell_loops import count_fractions
 

@@ -85,8 +85,9 @@ _STATION = _spelled(
     "tiefe teufe messtiefe messteufe profondeur"
 )
 _AZIMUTH = _spelled(
-    "azimuth azi az azim azm hornornt holeornt brg bearing dipazimuth dipdirection dipdir hazi 方位角 方位 倾向 azimut "
-    "richtung bohrrichtung"
+    "gridazimuth azimuthgrid gridazi azigrid azimuth azi az azim azm hornornt holeornt brg bearing dipazimuth "
+    "dipdirection dipdir hazi 方位角 方位 倾向 azimut richtung bohrrichtung "
+    "magneticazimuth azimuthmagnetic magazimuth azimuthmag magazi azimag magaz azmag magneticbearing 磁方位角 磁方位"
 )
 _DIP = _spelled("dip dipangle hornincl holeincl plunge 倾角 倾斜角 倾伏角 neigung fallen einfallen pendage plongement")
 _FROM = _spelled(

@@ -15,7 +15,7 @@ from geofit.data.errors import InputError
 from geofit.data.messages import EMPTY, Message, message
 from geofit.io.journal import Journal
 from geofit.io.source import Source
-from geofit.io.units import grid_unit
+from geofit.io.units import METRES, grid_unit, metres_of
 
 __all__ = [
     "EXPLODE",
@@ -38,17 +38,19 @@ CLOSABLE, ARC = ("LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE"), 0.002
 BLOCK = message("io.block-not-read", "Lines in a block are not read")
 EXPLODE = message("io.explode-block", "Explode the block in CAD.")
 
-#: $INSUNITS of the units that are not metres, and drawing units a metre.
+#: $INSUNITS of the units that are not metres: what they are called, and the metres of one.
 _UNITS = {
-    1: ("inches", 39.3701),
-    2: ("feet", 3.28084),
-    3: ("miles", 1 / 1609.344),
-    4: ("millimetres", 1000.0),
-    5: ("centimetres", 100.0),
-    7: ("kilometres", 0.001),
-    10: ("yards", 1.09361),
-    21: ("US survey feet", 3937 / 1200),
+    1: ("inches", 0.0254),
+    2: ("feet", METRES["ft"]),
+    3: ("miles", 1609.344),
+    4: ("millimetres", METRES["mm"]),
+    5: ("centimetres", METRES["cm"]),
+    7: ("kilometres", METRES["km"]),
+    10: ("yards", 0.9144),
+    21: ("US survey feet", METRES["ft-us"]),
 }
+#: Those with which CAD begins every drawing, whatever is drawn in it: they state nothing.
+_OF_TEMPLATES = (1, 4)
 
 
 @dataclass(frozen=True)
@@ -82,10 +84,10 @@ class ClosedLine:
     xyz: NDArray[np.float64]
 
 
-def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True) -> list[Entity]:
-    """Return the entities of the model space in metres of ``source.unit``.
+def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = False) -> tuple[list[Entity], float]:
+    """Return the entities of the model space in metres, and the metres of one unit of the drawing.
 
-    A unit of the drawing other than metres is warned of unless a unit or a scale is stated.
+    The unit is that of ``source``; else, unless a scale is stated, the drawing's own, with a warning.
 
     Raises
     ------
@@ -93,24 +95,24 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
         If the file is missing, or no drawing that can be read.
     """
     journal.read(source)
-    factor = grid_unit(source, journal)
     with _readable(source):
         document = _document(source)
+        factor = _unit(document, source, journal, scale_stated)
         entities, first = [], 1
         for raw in document.modelspace():
             entity = _entity(raw, first, factor)
             entities.append(entity)
             first += entity.size
-        unit = int(document.header.get("$INSUNITS", 0))
         _warn_of_paper(document, source, journal)
-    _warn_of_unit(unit, source, journal, scale_stated)
-    return entities
+    return entities, factor
 
 
 def closed_lines(
     source: Source, journal: Journal, *, scale_stated: bool = False, with_open_lines: bool = False
-) -> list[ClosedLine]:
-    """Return the closed lines of the model space, metres of ``source.unit``; all other entities are listed.
+) -> tuple[list[ClosedLine], float]:
+    """Return the closed lines of the model space in metres, and the metres of one unit of the drawing.
+
+    All other entities are listed; the unit is found as by :func:`open_drawing`.
 
     Polylines of a coordinate system of their own, arcs, circles, ellipses and splines become corners in the
     coordinates of the drawing. ``source.table`` chooses layers by a pattern.
@@ -120,7 +122,7 @@ def closed_lines(
     source, journal
         The drawing, and where everything that is not used is listed.
     scale_stated : bool
-        Whether a unit of the drawing other than metres is known.
+        Whether a scale is stated, which counts instead of the drawing's own unit.
     with_open_lines : bool
         Whether open lines belong to the drawing, as those of horizons do: they are listed as notes.
 
@@ -132,11 +134,10 @@ def closed_lines(
     from ezdxf.path import make_path
 
     journal.read(source)
-    factor = grid_unit(source, journal)
     found: list[ClosedLine] = []
     with _readable(source):
         document = _document(source)
-        unit = int(document.header.get("$INSUNITS", 0))
+        factor = _unit(document, source, journal, scale_stated)
         for number, raw in enumerate(document.modelspace(), 1):
             kind, layer = str(raw.dxftype()), _clean(str(raw.dxf.layer))
             xyz = np.zeros((0, 3))
@@ -169,8 +170,7 @@ def closed_lines(
                 continue
             found.append(ClosedLine(layer, factor * xyz))
         _warn_of_paper(document, source, journal)
-    _warn_of_unit(unit, source, journal, scale_stated)
-    return found
+    return found, factor
 
 
 def _document(source: Source) -> Any:
@@ -227,24 +227,48 @@ def _warn_of_paper(document: Any, source: Source, journal: Journal) -> None:
             )
 
 
-def _warn_of_unit(unit: int, source: Source, journal: Journal, scale_stated: bool) -> None:
-    if unit in _UNITS and not scale_stated and (source.unit or source.usual_unit) is None:
-        name, per_metre = _UNITS[unit]
+def _unit(document: Any, source: Source, journal: Journal, scale_stated: bool) -> float:
+    """Return the metres of one unit of a drawing; what it states itself is listed, converted or not."""
+    code = int(document.header.get("$INSUNITS", 0))
+    if source.unit is not None or scale_stated or code not in _UNITS:
+        return grid_unit(source, journal)
+    name, metres = _UNITS[code]
+    if code not in _OF_TEMPLATES:
+        if source.usual_unit is not None and metres_of(source.usual_unit, source.name) == metres:
+            return grid_unit(source, journal)
+        journal.add(
+            "warning",
+            source.name,
+            message(
+                "io.drawing-unit-converted",
+                "The drawing states that its unit is {unit}; it is converted to metres (1 unit = {metres:.10g} m)",
+                unit=name,
+                metres=metres,
+            ),
+            message(
+                "io.state-unit-of-drawing",
+                'If it is in metres, state that: --unit m of geofit import and geofit body, unit = "m" in a site file.',
+            ),
+        )
+        return metres
+    if source.usual_unit is None:
         journal.add(
             "warning",
             source.name,
             message(
                 "io.drawing-unit-ignored",
-                "The drawing states that its unit is {unit}; it is read as metres",
+                "The drawing states that its unit is {unit}, as CAD templates do; it is read as metres",
                 unit=name,
             ),
             message(
                 "io.state-scale-or-unit",
-                "If that is right, state the unit (--unit of geofit import and geofit body, unit in a site file) or, "
-                "for a section, scale = {scale:g}.",
-                scale=per_metre,
+                "If it is in {unit}, state that: --unit of geofit import and geofit body, unit in a site file or, for "
+                "a section, scale = {scale:g}.",
+                unit=name,
+                scale=1.0 / metres,
             ),
         )
+    return grid_unit(source, journal)
 
 
 def _entity(raw: Any, first: int, factor: float) -> Entity:
@@ -312,7 +336,7 @@ def _words(raw: Any, kind: str) -> str:
 
 def count_points(source: Source) -> int:
     """Return the number of points of a drawing, as its readers count them; errors as :func:`open_drawing`."""
-    return sum(entity.size for entity in open_drawing(source, Journal()))
+    return sum(entity.size for entity in open_drawing(source, Journal())[0])
 
 
 def on_layers(entities: Iterable[Entity], source: Source, journal: Journal) -> tuple[list[Entity], int]:

@@ -18,6 +18,9 @@ from geofit.io.tables import Table
 
 __all__ = ["object_name", "read_vertices", "stated_axis_units"]
 
+#: What programs write where the unit of an axis was never set.
+_NO_UNIT = frozenset({"none", "unitless", "undefined", "unknown", "null", "n/a", "-", "?"})
+
 
 def object_name(line: str) -> str:
     """Return the name that a line of the header states, ``name:Top T1`` or ``HEADER {name:Top T1}``; else ""."""
@@ -26,9 +29,16 @@ def object_name(line: str) -> str:
 
 
 def stated_axis_units(line: str) -> list[str]:
-    """Return the units of x, y and z of a line ``AXIS_UNIT "m" " ft " m``."""
+    """Return the units of x, y and z of a line ``AXIS_UNIT "m" " ft " none``; "" where it states that there is none.
+
+    Examples
+    --------
+    >>> stated_axis_units('AXIS_UNIT "m" " ft " none')
+    ['m', 'ft', '']
+    """
     found = re.findall(r'"([^"]*)"|(\S+)', line.split(None, 1)[-1])
-    return [(quoted or bare).strip().casefold() for quoted, bare in found[:3]]
+    units = [(quoted or bare).strip().casefold() for quoted, bare in found[:3]]
+    return ["" if unit in _NO_UNIT else unit for unit in units]
 
 
 def read_vertices(source: Source, journal: Journal) -> Table:

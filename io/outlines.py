@@ -83,7 +83,8 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = (), *, un
 def _drawn(source: Source, layers: Collection[str], journal: Journal) -> DrawnOutlines:
     match source.path.suffix.casefold():
         case ".dxf":
-            rings = [(line.layer, line.xyz, "") for line in closed_lines(source, journal)]
+            lines, _ = closed_lines(source, journal)
+            rings = [(line.layer, line.xyz, "") for line in lines]
         case ".toml":
             if source.unit is not None:
                 raise InputError(

@@ -16,7 +16,7 @@ from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.site import ImportIssue, TableCount
-from geofit.io.axes import Region, check_axes
+from geofit.io.axes import Region, check_axes, check_elevations
 from geofit.io.columns import PICKS, Schema
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
@@ -150,6 +150,7 @@ def load_picks(
         )
     names = horizons.labels(rows) if "horizon" in rows.columns else Labels.same(alone or "", len(rows))
     check_axes(rows, xyz[:, 0], xyz[:, 1], region)
+    check_elevations(rows, xyz[:, 2])
     kinds = rows.labels("kind", required=False)
     rows.close()
     rows.require_any()

@@ -18,10 +18,13 @@ Ints = NDArray[np.int64]
 CHUNK = 1 << 15
 
 
-def list_places(horizon: str, points: PointSet, journal: Journal, nearness: float = 0.01) -> None:
+def list_places(
+    horizon: str, points: PointSet, journal: Journal, nearness: float = 0.01, *, steep: bool = False
+) -> None:
     """List points that lie within ``nearness`` (m) of another in plan: repeated, or at two elevations.
 
-    All of them stay in use; the fit resolves them by accuracy. A single point is listed too.
+    All of them stay in use; the fit resolves them by accuracy. A single point is listed too. A ``steep`` horizon, such
+    as a fault over its best plane or a fold, has several elevations at one location.
     """
     if len(points) == 1:
         journal.add(
@@ -63,7 +66,7 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
                 ),
                 row=int(points.row[j]),
             )
-        else:
+        elif not steep:
             journal.add(
                 "warning",
                 points.labels["file"].word(j),

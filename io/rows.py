@@ -22,6 +22,7 @@ from geofit.io.formats import read_any_table
 from geofit.io.guess import WORDS, find_columns
 from geofit.io.journal import Journal, Severity
 from geofit.io.no_data import is_no_data
+from geofit.io.sniff import is_number
 from geofit.io.source import Source, as_source
 from geofit.io.tables import Table, parse_numbers
 from geofit.io.units import ANGLES, DEGREES, LENGTHS, METRES, angle_factors, length_factors, with_unit
@@ -117,16 +118,21 @@ class Rows:
             message("io.cell-empty", "The {role} is empty", role=role),
             message("io.cell-not-a-number", "The {role} is not a finite number", role=role),
         )
+        mark = self.table.decimal
+        other = "." if mark == "," else ","
         remedy = message(
             "io.give-plain-number",
             "Give a number with the decimal mark '{mark}' and without thousands separators, in the unit of its column.",
-            mark=self.table.decimal,
+            mark=mark,
         )
+        mixed, one_mark = _mixed_marks(role, mark, other)
         for i in bad.tolist():
             if (number := self._with_unit(role, cells[i])) is not None:
                 values[i] = number
             elif required and not cells[i].strip():
                 self.reject(i, role, empty, message("io.complete-the-cell", "Complete the cell."))
+            elif other in cells[i] and is_number(cells[i]):
+                self.reject(i, role, mixed, one_mark)
             elif required or not is_blank(cells[i]):
                 self.reject(i, role, wrong, remedy)
         if no_data and not required:
@@ -366,3 +372,21 @@ def _degrees(table: Table, columns: dict[str, int]) -> str | None:
     """Return the system of longitude and latitude where the columns of x and y are named so."""
     names = [plain_name(table.header[columns[role]])[0] for role in ("x", "y") if role in columns]
     return WGS84 if len(names) == 2 and all(name in GEOGRAPHIC for name in names) else None
+
+
+def _mixed_marks(role: str, mark: str, other: str) -> tuple[Message, Message]:
+    """Return why a number with the other decimal mark than that of its table is not used, and what to do."""
+    marks = {"mark": Untranslated(mark), "other": Untranslated(other)}
+    return message(
+        "io.cell-of-other-decimal",
+        "The {role} has the mark '{other}', but the decimal mark of this table is '{mark}': a cell such as "
+        "1{other}234 could be two numbers",
+        role=role,
+        **marks,
+    ), message(
+        "io.write-one-decimal-mark",
+        "Write all numbers with '{mark}' before the fraction and without thousands separators. If the decimal mark of "
+        'the table is \'{other}\', state decimal = "{other}" in a site or mapping file, or --decimal "{other}" of '
+        "geofit fit and check.",
+        **marks,
+    )

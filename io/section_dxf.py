@@ -13,7 +13,6 @@ from geofit.io.dxf import EXPLODE, LINES, on_layers, open_drawing, problem
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.source import Source
-from geofit.io.units import grid_unit
 
 __all__ = ["DrawnLines", "read_drawing"]
 
@@ -22,7 +21,7 @@ __all__ = ["DrawnLines", "read_drawing"]
 class DrawnLines:
     """Vertices of the horizon lines in drawing order.
 
-    ``xyz`` (n, 3) in metres of the stated unit, of which one is ``unit`` metres, z nan where the drawing is flat;
+    ``xyz`` (n, 3) in metres, of which one unit of the drawing has ``unit``, z nan where the drawing is flat;
     ``horizon`` the name of each, ``number`` its running number among all points of the drawing, from 1; ``listed``
     counts what is on other layers or cannot be used.
     """
@@ -51,7 +50,7 @@ def read_drawing(
     InputError
         If the drawing cannot be read, or is empty.
     """
-    entities = open_drawing(source, journal, scale_stated=scale_stated)
+    entities, unit = open_drawing(source, journal, scale_stated=scale_stated)
     if not entities:
         raise InputError(
             message("io.drawing-empty", "The drawing is empty"),
@@ -116,6 +115,5 @@ def read_drawing(
             xyz.append(vertex)
             names.append(horizon)
             numbers.append(number)
-    unit = grid_unit(source, Journal())
     places = np.array(xyz, dtype=np.float64).reshape(-1, 3)
     return DrawnLines(places, names, np.array(numbers, dtype=np.int64), listed, unit)

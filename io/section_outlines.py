@@ -20,7 +20,6 @@ from geofit.io.sections import Drawing, lift, off_line_reason
 from geofit.io.site_drawings import placed_levels, placed_sections, plan_lines
 from geofit.io.site_keys import Reader
 from geofit.io.source import Source
-from geofit.io.units import grid_unit
 
 __all__ = ["site_outlines"]
 
@@ -76,8 +75,7 @@ def _is_drawing(source: Source) -> bool:
 
 
 def _closed(source: Source, drawing: Drawing, journal: Journal) -> list[tuple[str, Floats]]:
-    lines = closed_lines(source, journal, scale_stated=drawing.scale != 1.0, with_open_lines=True)
-    unit = grid_unit(source, Journal())
+    lines, unit = closed_lines(source, journal, scale_stated=drawing.scale != 1.0, with_open_lines=True)
     return [(line.layer, drawing.metres(line.xyz[:, :2], (unit, unit))) for line in lines]
 
 

@@ -53,6 +53,8 @@ _COMMAED = r"[1-9]\d{0,2}(?:\.\d{3})+,\d+"
 _SURE_COMMA = r"(?![1-9]\d{0,2},\d{3}(?!\d))\d*,\d+|[1-9]\d{0,2}(?:\.\d{3}){2,}"
 _SURE_POINT = r"(?![1-9]\d{0,2}\.\d{3}(?!\d))\d*\.\d+|[1-9]\d{0,2}(?:,\d{3}){2,}"
 _MARKS = re.compile(rf"[+-]?(?:{_POINTED}|{_COMMAED}|[1-9]\d{{0,2}}([.,])\d{{3}}(?:\1\d{{3}})+)")
+#: Commas that separate cells, and cells in quotes, whose commas do not.
+_OUTSIDE_QUOTES = re.compile(r'("[^"\n]*")|,')
 #: Letters of a text in which they are looked for.
 HEAD = 65_536
 #: Titles have at most this share of the usual cells; a header lies at most so many rows below the first of them.
@@ -63,7 +65,7 @@ def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, st
     """Return the text of a file and its encoding.
 
     In order: what the caller says, a byte order mark, strict UTF-8, UTF-16 by its zero bytes, GB18030 where
-    the bytes look like Chinese, Windows-1252.
+    the bytes look like Chinese, Windows-1251 where they look like Cyrillic, Windows-1252.
     """
     if encoding is not None:
         try:
@@ -123,6 +125,8 @@ def _candidates(data: bytes) -> Iterator[str]:
     yield "utf-8"
     if _looks_chinese(data):
         yield "gb18030"
+    if _looks_cyrillic(data):
+        yield "cp1251"
     yield "cp1252"
 
 
@@ -139,6 +143,13 @@ def _looks_chinese(data: bytes) -> bool:
     high = re.findall(rb"[\x80-\xff]+", data)
     common = sum(len(re.findall(rb"[\xa1-\xa3\xb0-\xd7][\xa1-\xfe]", run)) for run in high if len(run) % 2 == 0)
     return common * 2 > 0.6 * sum(map(len, high)) > 0
+
+
+def _looks_cyrillic(data: bytes) -> bool:
+    """Whether the bytes above 127 are whole words: letters with accents stand alone, or two of them together."""
+    high = re.findall(rb"[\x80-\xff]+", data)
+    words = sum(map(len, (run for run in high if re.fullmatch(rb"[\xa8\xb8\xc0-\xff]{3,}", run))))
+    return words > 0.6 * sum(map(len, high)) > 0
 
 
 def split_line(line: str, sep: str) -> list[str]:
@@ -162,8 +173,15 @@ def quoted_cells(lines: Sequence[str], sep: str) -> list[str]:
 
 
 def is_number(cell: str) -> bool:
-    """Whether a cell is a number under one of the two decimal marks."""
-    return _NUMBER.fullmatch(cell.strip()) is not None
+    """Whether a cell is a number under one of the two decimal marks, with marks of thousands or without.
+
+    Examples
+    --------
+    >>> [is_number(cell) for cell in ("1.5", "1,5", "500.636,96", "4.300.551", "1 234,5", "T2")]
+    [True, True, True, True, True, False]
+    """
+    text = cell.strip()
+    return any(form.fullmatch(text) is not None for form in (_NUMBER, _MARKS, _BLANKS))
 
 
 def grouped_number(cell: str, decimal: str) -> float:
@@ -204,9 +222,15 @@ def find_separator(lines: Sequence[str]) -> str:
 
 
 def find_decimal(text: str, sep: str) -> str:
-    """Return the decimal mark that most fractions of the text have."""
-    if sep == "," or "," not in text:
-        return "."
+    """Return the decimal mark that most fractions of the text have; between commas only quotes can hold another one.
+
+    Examples
+    --------
+    >>> [find_decimal(text, sep) for text, sep in (('"1,5","2,5"', ","), ("1,5,2.5", ","), ("1,5;2,25", ";"))]
+    [',', '.', ',']
+    """
+    if sep == ",":
+        text = _OUTSIDE_QUOTES.sub(lambda found: found[1] or " ", text)
     if mark := decimal_of_groups(text[:HEAD]):
         return mark
     commas, points = len(_DECIMAL_COMMA.findall(text)), len(_DECIMAL_POINT.findall(text))
@@ -232,7 +256,7 @@ def decimal_of_groups(text: str) -> str:
 
 def is_header(first: Sequence[str], following: Sequence[Sequence[str]]) -> bool:
     """Whether the first row names the columns: words are above numbers more often than numbers do."""
-    numeric = [is_number(cell) or grouped_number(cell, ".") == grouped_number(cell, ".") for cell in first]
+    numeric = [is_number(cell) for cell in first]
     if not any(numeric):
         return True
     words = numbers = 0

@@ -44,6 +44,7 @@ class _Reader:
         self.same: dict[str, str] = {}
         self.fixed: list[tuple[str, tuple[float, float, float], int]] = []
         self.read = self.used = self.anonymous = 0
+        self.bearings, self.declined = 0, False
         self.remarks: dict[str, int] = {}
         self.uncorrected: dict[Unread, int] = {}
 
@@ -156,6 +157,7 @@ class _Reader:
                 case "units":
                     return settings.with_units(rest)
                 case "calibrate" | "declination":
+                    self.declined = self.declined or "declination" in line.casefold()
                     if re.search(r"\d,\d", line):  # a decimal comma would make the decimals a scale
                         raise ValueError(line)
                     return settings.with_correction(word, rest)
@@ -304,11 +306,15 @@ class _Reader:
         require_length(offset)
         counted = not (splay or settings.duplicate or settings.surface)
         self.shots.append((names[0], names[1], offset, row, counted, not (splay or settings.surface)))
+        self.bearings += abs(clino) < 90.0
         for unread in settings.unread:
             self.uncorrected[unread] = self.uncorrected.get(unread, 0) + 1
 
     def warn_uncorrected(self) -> None:
-        """Warn of shots that are used as they were read, since a correction of them could not be read."""
+        """Warn of shots that are used as they were read: a correction could not be read, or none is stated on a map."""
+        # Only a survey with a place on the map has a grid north from which its bearings differ.
+        if self.bearings and not self.declined and any(xyz[0] or xyz[1] for _, xyz, _ in self.fixed):
+            self.uncorrected[Unread("declination", corrected_by("declination", ()), self.source.name)] = self.bearings
         for unread, count in self.uncorrected.items():
             reason = plural_message(
                 "io.shots-uncorrected",

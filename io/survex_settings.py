@@ -25,7 +25,10 @@ CORRECTIONS = {
     "calibrate": message(
         "io.write-calibrate", "Write *calibrate QUANTITY ZERO_ERROR, with units and a scale where they are needed."
     ),
-    "declination": message("io.write-declination", "Write *declination VALUE degrees; auto is not computed."),
+    "declination": message(
+        "io.write-declination",
+        "Write *declination VALUE degrees, 0 for bearings from grid north; auto is not computed.",
+    ),
 }
 _SAME = {
     "length": "tape", "bearing": "compass", "gradient": "clino", "backlength": "backtape", "backbearing": "backcompass",
@@ -67,13 +70,13 @@ def finite(cell: str) -> float:
 
 @dataclass(frozen=True)
 class Unread:
-    """A correction that could not be read: its command, what it would have corrected, and where it is."""
+    """A correction that could not be read, or is not in the file: its command, what it would correct, where it is."""
 
     word: str
     corrected: Message
     file: str
-    row: int
-    line: str
+    row: int = 0
+    line: str = ""
 
 
 def corrected_by(word: str, rest: Sequence[str]) -> Message:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
@@ -28,6 +29,8 @@ SHARPEST_TURN, SHARP_TURN = 90.0, 30.0
 FLAT = 45.0
 #: Stations are measured a little below the end of the log, metres.
 BELOW_END = 0.5
+#: How the header of magnetic azimuths is marked.
+_MAGNETIC = re.compile("mag|磁", re.IGNORECASE)
 #: The azimuth of a steeper hole does not matter, degrees.
 VERTICAL = 89.99
 
@@ -53,7 +56,7 @@ class Stations:
         sign: Literal["down-positive", "down-negative"] | None,
         *,
         blank_is_vertical: bool = False,
-        declination: float = 0.0,
+        declination: float | None = None,
     ) -> dict[str, Stations]:
         """Return the stations of each hole; rows that cannot be used are listed."""
         azimuth, dip = (
@@ -95,7 +98,7 @@ class Stations:
                 message("io.azimuth-out-of-range", "The azimuth is not between 0 and 360 degrees"),
                 message("io.give-azimuth", "Give degrees from north."),
             )
-        azimuth = azimuth + declination
+        azimuth = azimuth + (declination or 0.0)
         dip = _downwards(rows, dip, sign)
         _warn_of_flat(rows, name, dip)
         chosen = rows.ok & np.isfinite(dip)
@@ -106,6 +109,8 @@ class Stations:
             kept = _sound(rows, group, depth, azimuth, dip)
             if kept.size:
                 result[name[kept[0]]] = Stations(depth[kept], azimuth[kept], dip[kept])
+        if declination is None and any(np.abs(station.dip).min() < VERTICAL for station in result.values()):
+            _tell_north(rows)
         return result
 
 
@@ -123,11 +128,12 @@ def read_stations(
     sign: Literal["down-positive", "down-negative"] | None,
     collars: Mapping[str, Collar],
     journal: Journal,
-    declination: float = 0.0,
+    declination: float | None = None,
 ) -> dict[str, Stations]:
     """Read a survey table; stations of unknown holes, repeated and impossible ones are listed.
 
-    ``declination`` (degrees, east positive) is added to the azimuths, which are grid azimuths without one.
+    ``declination`` (degrees, east positive) is added to the azimuths; without one they are read as grid azimuths, with
+    a warning if their header states that they are magnetic.
 
     The attitude of the collar table is the station at 0 where the survey has none. Without one, a hole goes straight to
     its first station, and a hole with one station is straight: each is listed as a warning, vertical ones in one note.
@@ -144,17 +150,6 @@ def read_stations(
             message("io.depths-positive-down", "Depths are positive and count from the collar, downwards."),
         )
     stations = Stations.from_rows(rows, name, depth, sign, declination=declination)
-    if not declination and any(np.abs(station.dip).min() < VERTICAL for station in stations.values()):
-        journal.add(
-            "note",
-            rows.file,
-            message("io.azimuths-from-grid-north", "The azimuths are taken as relative to grid north"),
-            message(
-                "io.state-declination",
-                "If they are magnetic, state declination = ... (degrees, east positive).",
-            ),
-            column=rows.table.header[rows.columns["azimuth"]],
-        )
     _start_at_collar(rows, stations, collars)
     _warn_beyond_end(rows, name, depth, collars)
     first: dict[str, int] = {}
@@ -206,6 +201,25 @@ def read_stations(
             )
     rows.close()
     return stations
+
+
+def _tell_north(rows: Rows) -> None:
+    """List that azimuths without a declination are taken from grid north: a warning where they are magnetic."""
+    header = rows.table.header[rows.columns["azimuth"]]
+    remedy = message("io.state-declination", "If they are magnetic, state declination = ... (degrees, east positive).")
+    if _MAGNETIC.search(header):
+        reason = message(
+            "io.azimuths-magnetic",
+            "The azimuths are magnetic, but no declination is stated: they are read as grid azimuths",
+        )
+        remedy = message(
+            "io.state-declination-or-zero",
+            "State declination = ... (degrees, east positive) in [boreholes] of a site file; 0 if they are corrected.",
+        )
+        rows.journal.add("warning", rows.file, reason, remedy, column=header)
+        return
+    reason = message("io.azimuths-from-grid-north", "The azimuths are taken as relative to grid north")
+    rows.journal.add("note", rows.file, reason, remedy, column=header)
 
 
 def _start_at_collar(rows: Rows, stations: dict[str, Stations], collars: Mapping[str, Collar]) -> None:

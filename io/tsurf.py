@@ -107,7 +107,7 @@ def _take(one: _Object, key: str, line: str, words: Sequence[str]) -> None:
     elif key == "*NAME:":
         one.name = words[1]
     elif key == "AXIS_UNIT":
-        one.units = [metres_of(word) for word in stated_axis_units(line)]
+        one.units = [metres_of(unit) if unit else 1.0 for unit in stated_axis_units(line)]
     elif key == "ZPOSITIVE":
         one.down = words[1].casefold() == "depth"
     elif key in ("VRTX", "PVRTX"):

@@ -5,7 +5,6 @@ OpenCASCADE is imported inside the functions: it takes seconds to load.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from io import BytesIO
@@ -13,6 +12,7 @@ from os import PathLike
 from typing import Any
 
 from geofit.cad.faces import placement
+from geofit.cad.iges_names import iges_labels, iges_names
 from geofit.cad.sewing import shell
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
@@ -57,6 +57,8 @@ def write_brep(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> No
 def write_iges(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> None:
     """Write horizons as trimmed NURBS surfaces (entity 144), each with its horizon's name (entity 406-15).
 
+    The names are ASCII: :func:`geofit.cad.iges_names.iges_names`.
+
     Raises
     ------
     StitchError
@@ -70,6 +72,7 @@ def write_iges(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> No
     from OCP.TCollection import TCollection_HAsciiString
 
     given = _given(surfaces, path)
+    names, labels = iges_names(given), iges_labels(given)
     with _metres():
         IGESControl_Controller.Init_s()
         maker = IGESControl_Writer("M", 0)
@@ -80,7 +83,7 @@ def write_iges(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> No
         for name, surface in given.items():
             first = model.NbEntities() + 1
             maker.AddShape(shell(surface).Located(placement(surface.origin)))
-            _label(model, name, first)
+            _name(model, names[name], labels[name], first)
         maker.ComputeModel()
         section = model.GlobalSection()
         section.SetDate(TCollection_HAsciiString(DATE))
@@ -117,28 +120,22 @@ def _metres() -> Iterator[None]:
         UnitsMethods.SetCasCadeLengthUnit_s(before)
 
 
-def _label(model: Any, name: str, first: int) -> None:
-    """Name the entities of one shell: its group, or its one face, whole (406-15), every face by eight letters.
-
-    IGES knows ASCII only; a name without any is the label alone.
-    """
+def _name(model: Any, name: str, label: str, first: int) -> None:
+    """Name the entities of one shell: its group, or its one face, whole (406-15), every face by its label."""
     from OCP.IGESBasic import IGESBasic_Group, IGESBasic_Name
     from OCP.IGESGeom import IGESGeom_TrimmedSurface
     from OCP.TCollection import TCollection_HAsciiString
 
-    short = re.sub(r"[^A-Za-z0-9_-]+", "_", name)[:8].strip("_") or "HORIZON"
     entities = [model.Entity(k) for k in range(first, model.NbEntities() + 1)]
     faces = [entity for entity in entities if isinstance(entity, IGESGeom_TrimmedSurface)]
     for face in faces:
-        face.SetLabel(TCollection_HAsciiString(short), 0)
-    long = re.sub(r"[^ -~]+", "_", name).strip("_ ")
-    if long:
-        title = IGESBasic_Name()
-        title.Init(1, TCollection_HAsciiString(long))
-        model.AddEntity(title)
-        groups = [entity for entity in entities if isinstance(entity, IGESBasic_Group)]
-        for entity in groups or faces:
-            entity.AddProperty(title)
+        face.SetLabel(TCollection_HAsciiString(label), 0)
+    title = IGESBasic_Name()
+    title.Init(1, TCollection_HAsciiString(name))
+    model.AddEntity(title)
+    groups = [entity for entity in entities if isinstance(entity, IGESBasic_Group)]
+    for entity in groups or faces:
+        entity.AddProperty(title)
 
 
 def _given(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> Mapping[str, Surface]:

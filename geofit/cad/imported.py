@@ -26,7 +26,10 @@ from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 from geofit.surfaces.trimmed import TrimmedSurface
 
-__all__ = ["FileShape", "empty_document", "existing", "no_faces", "products", "quiet", "surface_of", "unique_name"]
+__all__ = [
+    "FileShape", "empty_document", "existing", "no_faces", "outline_of", "products", "quiet", "surface_of",
+    "transformation_of", "unique_name",
+]  # fmt: skip
 
 Floats = NDArray[np.float64]
 
@@ -151,7 +154,7 @@ def surface_of(shape: FileShape, whole: bool = False) -> PatchSurface:
     named = zip(faces_of(shape.shape), shape.face_names, strict=True)
     faces = [_patch(name, face, whole) for face, name in named]
     patches = [patch for patch, _ in faces]
-    matrix, origin = _transformation(shape.location)
+    matrix, origin = transformation_of(shape.location)
     if not np.array_equal(matrix, np.eye(3)):
         patches = [_moved(patch, matrix, np.zeros(3)) for patch in patches]
     first = patches[0].control[0, 0]
@@ -162,7 +165,7 @@ def surface_of(shape: FileShape, whole: bool = False) -> PatchSurface:
     surface = PatchSurface(tuple(patches), origin, shape.name)
     if any(loops):
         surface = TrimmedSurface(tuple(patches), origin, shape.name, trim_loops=loops)
-    outline = _outline(shape) if is_height_field(surface) or _looks_one_way(surface) else None
+    outline = outline_of(shape) if is_height_field(surface) or _looks_one_way(surface) else None
     if outline is None or needed(ended := replace(surface, outline=outline), 1e-6) is None:
         return surface
     return ended
@@ -254,7 +257,8 @@ def _loop(wire: Any, face: Any) -> Floats:
     return np.array(places).reshape(-1, 2)
 
 
-def _transformation(location: Any) -> tuple[Floats, Floats]:
+def transformation_of(location: Any) -> tuple[Floats, Floats]:
+    """Return the matrix (3, 3) and the shift (3,) of a placement."""
     move = location.Transformation()
     matrix = np.array([[move.Value(i, j) for j in (1, 2, 3)] for i in (1, 2, 3)])
     part = move.TranslationPart()
@@ -266,7 +270,7 @@ def _moved(patch: Patch, matrix: Floats, shift: Floats) -> Patch:
     return Patch(patch.name, patch.degree, patch.knots_u, patch.knots_v, control, patch.weights)
 
 
-def _outline(shape: FileShape) -> Floats | None:
+def outline_of(shape: FileShape) -> Floats | None:
     """Loop of the free edges in plan, in map coordinates; None if it is not one simple polygon."""
     import shapely
 
@@ -283,7 +287,7 @@ def _outline(shape: FileShape) -> Floats | None:
     merged = shapely.get_parts(shapely.line_merge(shapely.MultiLineString(lines))).tolist()
     if len(merged) != 1 or not merged[0].is_ring:
         return None
-    matrix, origin = _transformation(shape.location)
+    matrix, origin = transformation_of(shape.location)
     polygon = shapely.Polygon(merged[0].simplify(1e-7))
     if not polygon.is_valid or not np.array_equal(matrix, np.eye(3)):
         return None

@@ -12,6 +12,7 @@ import shutil
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
@@ -22,10 +23,21 @@ from numpy.typing import NDArray
 from geofit import __version__
 from geofit.cad.faces import faces_of, placement
 from geofit.cad.foreign import read_in_child
-from geofit.cad.imported import FileShape, empty_document, existing, no_faces, products, quiet, surface_of
+from geofit.cad.imported import (
+    FileShape,
+    empty_document,
+    existing,
+    no_faces,
+    outline_of,
+    products,
+    quiet,
+    surface_of,
+    transformation_of,
+)
 from geofit.cad.read_back import read_back
 from geofit.cad.sewing import shell
 from geofit.cad.step_attributes import CONTINUED, attributes_of, with_attributes
+from geofit.cad.step_beyond import patches_beyond, with_patches_beyond
 from geofit.cad.step_origin import Origin, offset_attributes, offset_of, offset_words
 from geofit.cad.step_text import canonical, read_written
 from geofit.data.accuracy import ReadBack
@@ -163,7 +175,14 @@ def store_step(
         names = [_patch_names(shells[name], s.patches) for name, s in surfaces.items()]
         stated = offset_attributes(offset)
         attributes = [attributes_of(as_fitted(surface)) | stated for surface in surfaces.values()]
-        _save(filled, names, target, attributes, (author or "geofit", organisation), offset_words(offset))
+        beyond = [
+            [patch for patch in surface.patches if patch.name not in own and "beyond_loops" in known]
+            for surface, own, known in zip(surfaces.values(), names, attributes, strict=True)
+        ]
+        _save(
+            filled, names, target, attributes, (author or "geofit", organisation), offset_words(offset), beyond,
+            1000.0 if unit == "mm" else 1.0,
+        )  # fmt: skip
     return shells
 
 
@@ -205,13 +224,24 @@ def step_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     What lies beneath the loops of a face is known only where the file states that a fit continues there: then points
     outside are measured as in the fit.
     """
-    return {shape.name: _surface(shape) for shape in read_shapes(path)}
+    shapes = read_shapes(path)
+    beyond = patches_beyond(Path(path)) if any(map(_continues, shapes)) else {}
+    return {shape.name: _surface(shape, beyond.get(k, [])) for k, shape in enumerate(shapes)}
 
 
-def _surface(shape: FileShape) -> PatchSurface:
-    if shape.attributes.get("beyond_loops") != CONTINUED:
+def _continues(shape: FileShape) -> bool:
+    return shape.attributes.get("beyond_loops") == CONTINUED
+
+
+def _surface(shape: FileShape, beyond: Sequence[Patch]) -> PatchSurface:
+    """Return a product's surface; where a fit continues beneath the loops with all its patches."""
+    if not _continues(shape):
         return surface_of(shape)
     surface = surface_of(shape, whole=True)
+    matrix, shift = transformation_of(shape.location)
+    if beyond and np.array_equal(matrix, np.eye(3)):
+        more = (replace(patch, control=patch.control + (shift - surface.origin)) for patch in beyond)
+        surface = replace(surface, patches=(*surface.patches, *more), outline=outline_of(shape))
     # Without an outline only the loops end the faces.
     return surface_of(shape) if surface.outline is None else surface
 
@@ -327,6 +357,8 @@ def _save(
     attributes: Sequence[Mapping[str, str]],
     signed: tuple[str, str],
     about: str,
+    beyond: Sequence[Sequence[Patch]],
+    metre: float,
 ) -> None:
     from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
     from OCP.IFSelect import IFSelect_RetDone
@@ -363,6 +395,7 @@ def _save(
             )
         with replacing(target) as part:
             text = with_attributes(canonical(read_written(temporary)), attributes)
+            text = with_patches_beyond(text, beyond, metre)
             part.write_text(text, "ascii", newline="\n")
     except OSError as error:
         raise cannot_write(error, target) from None

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from geofit import __version__
 from geofit.cad.step_origin import OFFSET_KEYS
-from geofit.cad.step_text import shaped_products
+from geofit.cad.step_text import products_of
 from geofit.data.accuracy import Accuracy
 from geofit.surfaces.protocol import FittedSurface
 
@@ -86,23 +86,13 @@ def with_attributes(text: str, attributes: Sequence[Mapping[str, str]]) -> str:
     head, end, tail = text.rpartition("ENDSEC;")
     free = max(int(number) for number in re.findall(r"^#(\d+) =", head, re.M)) + 1
     added = []
-    for (product, context), values in zip(_products(head), attributes, strict=True):
+    for (product, context), values in zip(products_of(head), attributes, strict=True):
         for key, value in values.items():
             numbers = range(free, free + _LINES)
             free += _LINES
             quoted = value.replace("\\", "\\\\").replace("'", "''")
             added.append(_ATTRIBUTE.format(*numbers, key=key, value=quoted, product=product, context=context))
     return head + "".join(added) + end + tail
-
-
-def _products(text: str) -> list[tuple[str, str]]:
-    """Return the numbers of the definition and of the context of each product that is a sewn shell or a solid."""
-    shapes = dict(re.findall(r"SHAPE_DEFINITION_REPRESENTATION\(\s*#(\d+)\s*,\s*#(\d+)\s*\)", text))
-    by_shape = {shape: definition for definition, shape in shapes.items()}
-    definitions = dict(
-        re.findall(r"#(\d+) = PRODUCT_DEFINITION_SHAPE\(\s*'[^']*'\s*,\s*'[^']*'\s*,\s*#(\d+)\s*\)", text)
-    )
-    return [(definitions[by_shape[shape]], context) for shape, _, context in shaped_products(text)]
 
 
 def attributes_at(label: Any) -> dict[str, str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-__all__ = ["canonical", "read_written", "shaped_products"]
+__all__ = ["canonical", "products_of", "read_written", "shaped_products"]
 
 #: Colours of the products in turn (red, green, blue): earth tones that stay apart.
 COLOURS = ((0.76, 0.60, 0.42), (0.55, 0.64, 0.45), (0.45, 0.56, 0.68), (0.70, 0.47, 0.43), (0.60, 0.52, 0.66))
@@ -76,6 +76,16 @@ def shaped_products(text: str) -> list[tuple[str, list[str], str]]:
     listed = [(number, re.findall(r"#(\d+)", items), context) for number, items, context in found]
     held = [(number, [item for item in items if item in geometry], context) for number, items, context in listed]
     return [(number, items, context) for number, items, context in held if items]
+
+
+def products_of(text: str) -> list[tuple[str, str]]:
+    """Return the numbers of the definition and of the context of each product that is a sewn shell or a solid."""
+    shapes = dict(re.findall(r"SHAPE_DEFINITION_REPRESENTATION\(\s*#(\d+)\s*,\s*#(\d+)\s*\)", text))
+    by_shape = {shape: definition for definition, shape in shapes.items()}
+    definitions = dict(
+        re.findall(r"#(\d+) = PRODUCT_DEFINITION_SHAPE\(\s*'[^']*'\s*,\s*'[^']*'\s*,\s*#(\d+)\s*\)", text)
+    )
+    return [(definitions[by_shape[shape]], context) for shape, _, context in shaped_products(text)]
 
 
 def _coloured(text: str, colour: str) -> str:

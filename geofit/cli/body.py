@@ -24,8 +24,9 @@ from geofit.cli.options import (
     Report,
 )
 from geofit.cli.signing import read_origin, signed_by
-from geofit.data.errors import InputError
+from geofit.data.errors import InputError, SettingsError
 from geofit.data.messages import Message, message
+from geofit.data.numbers import is_finite
 
 if TYPE_CHECKING:
     from geofit.bodies.settings import BodySettings
@@ -61,6 +62,9 @@ def body(
     ] = None,
     unit: LengthUnit = None,
     epsilon: Annotated[float, typer.Option(help="Control error for sigma, m.")] = 0.5,
+    spacing: Annotated[
+        float | None, typer.Option(help="Spacing of the triangles, m. Default: chosen from the holes and the size.")
+    ] = None,
     author: Author = None,
     organisation: Organisation = None,
     certificate: Certificate = False,
@@ -73,9 +77,18 @@ def body(
     from geofit.bodies.questions import section_questions
     from geofit.bodies.settings import BodySettings
     from geofit.io.boreholes import Boreholes
+    from geofit.project.body_files import write_triangles
     from geofit.project.body_run import run_body
     from geofit.project.side_by_side import available
 
+    if spacing is not None and not (is_finite(spacing) and spacing > 0):
+        raise SettingsError(
+            message(
+                "cli.spacing-not-positive",
+                "The spacing of the triangles is {value} m; a finite length above 0 is needed.",
+                value=spacing,
+            )
+        )
     hands = available()
     settings, zero = BodySettings(epsilon=epsilon), read_origin(origin)
     title, page = None, lang.value if certificate else ""
@@ -98,6 +111,9 @@ def body(
             site = None if isinstance(holes, Boreholes) else holes
             signed = signed_by(site, author, organisation, zero, certificate=page)
             run = run_body(holes, out, codes=code, settings=settings, progress=progress, signed=signed, workers=hands)
+        if spacing is not None:
+            (stl,) = (file for file in run.files if file.suffix == ".stl")
+            write_triangles(run.body.mesh_at(spacing), stl.with_suffix(""), run.body.origin)
         if report:
             from geofit.data.languages import language
             from geofit.project.single_reports import write_body_report

@@ -8,7 +8,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec
@@ -92,7 +92,8 @@ def with_exit_code(command: Callable[P, int]) -> Callable[P, None]:
         _list_reasons(error, kwargs)
         say(str(error) if stopped else f"geofit: {error}")
         if kwargs.get("as_json"):
-            print_error(error, code)
+            with suppress(OSError):  # stdout itself may be on the disk that is full
+                print_error(error, code)
         return code
 
     return run

@@ -45,7 +45,7 @@ def export(
         Path | None,
         typer.Option(
             metavar="SITE_OR_CSV",
-            help="site.toml or table of points: deviations, sigma of STEP; a site's holes and CRS.",
+            help="site.toml or table of points: deviations, sigma of STEP; a site's holes, ground and CRS.",
         ),
     ] = None,
     value: Annotated[str, typer.Option(help="What a grid holds: elevation, deviation or thickness.")] = "elevation",
@@ -61,7 +61,7 @@ def export(
     as_json: Json = False,
 ) -> int:
     """Write horizons in other formats."""
-    from geofit.io.export.write import untrimmed, write_surface
+    from geofit.io.export.write import renamed, untrimmed, write_surface
     from geofit.io.surface_files import read_surfaces
 
     zero = read_origin(origin)
@@ -69,7 +69,7 @@ def export(
     if site is not None:
         print_issues(site.issues)
     given = read_surfaces(surfaces)
-    for sentence in untrimmed(given, to):
+    for sentence in (*untrimmed(given, to), *renamed(given, to)):
         say(sentence)
     signed = signed_by(site, author, organisation, zero, certificate=lang.value if certificate else "")
     if to == "step":
@@ -89,7 +89,15 @@ def export(
             holes=site.holes if site else (),
             site=site.name if site else surfaces[0].stem,
             crs=crs if crs is not None else site.crs if site else "",
+            ground=site.ground if site else None,
         )
+        if value == "thickness" and (site is None or site.ground is None):
+            say(
+                message(
+                    "cli.thickness-without-ground",
+                    "No ground is given (--points site.toml): what lies above it counts in the thickness",
+                )
+            )
     if as_json:
         print_json({"files": [str(file) for file in files]})
     else:

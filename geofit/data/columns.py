@@ -20,7 +20,8 @@ LARGEST = 1e9
 def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
     """Return a copy of easting, northing, elevation, (n, 3), metres; nothing given is (0, 3).
 
-    A read-only array is not copied.
+    A read-only array is not copied. Of a table with columns x, y and z, such as a pandas DataFrame, these are taken,
+    whatever their order.
 
     Raises
     ------
@@ -33,6 +34,10 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
         # A masked value is missing, whatever number it hides.
         given = np.ma.filled(given.astype(np.float64), np.nan)
     try:
+        named = {str(one).casefold(): one for one in _names(given)}
+        if named.keys() >= set("xyz"):
+            table: Any = given
+            given = np.column_stack([np.asarray(table[named[axis]], dtype=np.float64) for axis in "xyz"])
         if np.iscomplexobj(given):
             raise TypeError("they are complex")
         xyz = np.array(given, dtype=np.float64)
@@ -57,6 +62,11 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
             )
         )
     return xyz
+
+
+def _names(given: Any) -> list[Any]:
+    """Return the names of the columns of a table: a DataFrame or a structured array."""
+    return list(given.dtype.names or ()) if isinstance(given, np.ndarray) else list(getattr(given, "columns", ()))
 
 
 def finite_places(given: ArrayLike, name: str = "xyz") -> NDArray[np.float64]:

@@ -29,7 +29,7 @@ __all__ = [
     "spreadsheet_cell",
 ]
 
-_RESERVED = {"con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt") for i in range(1, 10))}
+_RESERVED = {"con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt") for i in "123456789¹²³")}
 #: Bytes of a stem in UTF-8: file systems take names of 255, with all that is added to a stem.
 _LONGEST = 150
 #: Files that the run in progress reads; None outside a run: a window may save what it opened.
@@ -91,8 +91,9 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     Raises
     ------
     InputError
-        If the system refuses to write the file (a full disk, no permission), with its name and the remedy; or if
-        the file is an input of the run (:func:`inputs_kept`).
+        If the system refuses to write the file (a full disk, no permission), with its name and the remedy; if
+        the file is an input of the run (:func:`inputs_kept`); or if a device or a pipe has its name, which would be
+        replaced.
 
     Examples
     --------
@@ -106,6 +107,12 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     # A link stays one: what it leads to is replaced.
     path = Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
     refuse_inputs([path])
+    if os.path.exists(path) and not is_file(path) and not os.path.isdir(path):
+        raise InputError(
+            message("data.output-not-file", "It is a pipe or a device, not a file, and would be replaced"),
+            message("data.name-another-output", "Name another file or folder for the results."),
+            file=legible(str(path)),
+        )
     # Short: the name of the file may be as long as the system allows.
     part = path.with_name(f".{uuid4().hex[:8]}.part{path.suffix}")
     try:

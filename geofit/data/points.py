@@ -31,7 +31,7 @@ _LIMITS, _WIDEST, _AWAY, _RISE = (180.0, 90.0), 5.0, 10.0, 10.0
 
 
 def look_like_degrees(xyz: ArrayLike) -> bool:
-    """Return whether (n, 3) coordinates can only be longitude, latitude and metres.
+    """Return whether (n, 3) coordinates can only be longitude and latitude, in either order, and metres.
 
     They are within the limits of both, in less than 5 units of each other but far from 0, written finer than to the
     millimetre, and rise ten times more than they extend: a slope that a horizon over metres does not have, but
@@ -46,7 +46,7 @@ def look_like_degrees(xyz: ArrayLike) -> bool:
     """
     values = np.asarray(xyz, float)
     # The first rows mostly settle it: a million are looked at last.
-    if len(values) < 3 or any((np.abs(rows[:, :2]) > _LIMITS).any() for rows in (values[:3], values)):
+    if len(values) < 3 or not all(map(_within_limits, (values[:3], values))):
         return False
     low, high = values.min(axis=0), values.max(axis=0)
     extent = float((high - low)[:2].max())
@@ -54,6 +54,12 @@ def look_like_degrees(xyz: ArrayLike) -> bool:
     milli = 1e3 * values[:, :2]
     fine = (np.abs(milli - np.round(milli)) > 1e-4).any(axis=1).mean() > 0.5
     return bool(0 < extent <= _WIDEST and middle > _AWAY * extent and high[2] - low[2] > _RISE * extent and fine)
+
+
+def _within_limits(xyz: Floats) -> bool:
+    """Return whether x and y can be longitude and latitude, in either order."""
+    size = np.abs(xyz[:, :2]).max(axis=0)
+    return bool((size <= _LIMITS).all() or (size <= _LIMITS[::-1]).all())
 
 
 _WORDS = ("kind", "hole", "section", "file")

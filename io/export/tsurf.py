@@ -16,7 +16,7 @@ def write_tsurf(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> None:
     """Write one TSurf object a horizon, coordinates to 1e-6 m."""
     lines: list[str] = []
     for name, mesh in meshes.items():
-        title = re.sub(r"[{}\s]+", " ", name).strip()
+        title = re.sub(r"[{}\s\x00-\x1f]+", " ", name).strip()
         lines += [
             "GOCAD TSurf 1",
             "HEADER {",

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, runtime_checkable
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.files import file_stems, folder_for
 from geofit.data.given import SURFACES, arguments_checked, require_kind
-from geofit.data.messages import Message, message
+from geofit.data.messages import Message, Untranslated, message
 from geofit.sampling.contours import contours
 from geofit.sampling.grids import deviation_grid, elevation_grid, thickness_grid
 from geofit.surfaces.protocol import Surface
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from geofit.data.points import PointSet
     from geofit.data.site import Ground, Hole
 
-__all__ = ["FORMATS", "Format", "format_of", "need_patches", "untrimmed", "write_surface"]
+__all__ = ["FORMATS", "Format", "format_of", "need_patches", "renamed", "untrimmed", "write_surface"]
 
 Surfaces = Mapping[str, Surface]
 
@@ -89,6 +89,7 @@ class _Options:
     points: Mapping[str, PointSet]
     holes: Sequence[Hole]
     site: str
+    ground: Ground | None
 
 
 @arguments_checked
@@ -107,6 +108,7 @@ def write_surface(
     points: Mapping[str, PointSet] | None = None,
     holes: Sequence[Hole] = (),
     site: str = "site",
+    ground: Ground | None = None,
 ) -> list[Path]:
     """Write surfaces in a format of :data:`FORMATS`.
 
@@ -137,13 +139,15 @@ def write_surface(
         Distance between grid nodes, metres; chosen from the extent if not given.
     value : {"elevation", "deviation", "thickness"}
         Values of a grid, metres: elevation of a surface, deviation of ``points`` from it, or the thickness
-        between two surfaces, the upper one first.
+        between two surfaces, the upper one first, below the ``ground``.
     points : mapping of str to PointSet, optional
         Data points by surface, for deviations; the names may differ where there is one of each.
     holes : sequence of Hole
         Boreholes and adits, for IFC.
     site : str
         Title of the site, for IFC.
+    ground : Ground, optional
+        The ground, for thickness: what lies above it does not count.
 
     Returns
     -------
@@ -207,7 +211,7 @@ def write_surface(
         need_patches(given, to, out)
     options = _Options(
         tolerance=tolerance, unit=unit, origin=origin, crs=crs, interval=interval, cell=cell, value=value,
-        points=points or {}, holes=holes, site=site,
+        points=points or {}, holes=holes, site=site, ground=ground,
     )  # fmt: skip
     folder_for(out.parent)
     return _write(given, chosen, out, options)
@@ -284,6 +288,37 @@ def untrimmed(surfaces: Surfaces, format: str) -> list[Message]:
         )
         for name, surface in surfaces.items()
         if any(surface.loops) and surface.outline is None
+    ]
+
+
+def renamed(surfaces: Surfaces, format: str) -> list[Message]:
+    """Return a warning for each surface whose name a format cannot write, with the name that the file has instead.
+
+    Parameters
+    ----------
+    surfaces : mapping of str to Surface
+        Surfaces by name.
+    format : str
+        A key of :data:`FORMATS`.
+
+    Returns
+    -------
+    list of Message
+        Empty but for IGES, whose names are ASCII.
+    """
+    if format != "iges":
+        return []
+    from geofit.cad.iges_names import iges_names
+
+    return [
+        message(
+            "io.name-not-ascii",
+            "{name}: IGES names are ASCII; in the file it is '{plain}'",
+            name=Untranslated(name),
+            plain=Untranslated(plain),
+        ).with_severity("warning")
+        for name, plain in iges_names(surfaces).items()
+        if name and plain != name
     ]
 
 
@@ -379,7 +414,7 @@ def _grids(surfaces: Surfaces, out: Path, options: _Options) -> list[tuple[Path,
                 message("io.name-upper-lower", "Name the upper one, then the lower."),
             )
         upper, lower = surfaces.values()
-        return [(out, thickness_grid(upper, lower, options.cell))]
+        return [(out, thickness_grid(upper, lower, options.cell, options.ground))]
     files = _files(surfaces, out)
     if options.value == "elevation":
         return [(files[name], elevation_grid(surface, options.cell)) for name, surface in surfaces.items()]

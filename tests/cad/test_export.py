@@ -9,7 +9,10 @@ from surfaces import fold, horizon, nine
 
 from geofit.cad.export import write_brep, write_iges
 from geofit.cad.faces import faces_of, free_loops, from_geom
+from geofit.cad.iges_names import iges_labels, iges_names
 from geofit.data.errors import InputError
+from geofit.io.export.write import renamed
+from geofit.io.surface_files import read_surfaces
 
 OUTLINE = [[100, 80], [500, 20], [900, 100], [950, 600], [80, 650]]
 
@@ -98,6 +101,26 @@ def test_iges_is_in_metres_trimmed_and_named(surfaces, tmp_path):
     # The whole name is the property 406-15 of the group.
     assert "406,1,6HT1 top;" in str(text)
     assert ",6,1HM," in str(text).replace("\n", "").replace(" ", "")
+
+
+def test_iges_names_are_ascii_and_no_two_alike(surfaces, tmp_path):
+    """Horizons in Chinese had all been HORIZON, and one surface when they were read again."""
+    names = ["强风化", "中风化", "Höhe", "T2 上", "T2 下", "T2", "HORIZON", "a\nb"]
+    plain = iges_names(names)
+    assert plain == {
+        "强风化": "HORIZON-2", "中风化": "HORIZON-3", "Höhe": "Hohe", "T2 上": "T2-2", "T2 下": "T2-3", "T2": "T2",
+        "HORIZON": "HORIZON", "a\nb": "a_b",
+    }  # fmt: skip
+    labels = list(iges_labels(names).values())
+    assert len(set(labels)) == len(names)
+    assert max(map(len, labels)) <= 8
+    write_iges(dict.fromkeys(names[:4], surfaces["强风化"]), tmp_path / "a.igs")
+    assert list(read_surfaces(tmp_path / "a.igs")) == ["HORIZON", "HORIZON-2", "Hohe", "T2"]
+    warnings = renamed(dict.fromkeys(names, surfaces["强风化"]), "iges")
+    assert [(one.params["name"], one.params["plain"]) for one in warnings] == [
+        (name, own) for name, own in plain.items() if own != name
+    ]
+    assert not renamed(surfaces, "step")
 
 
 @pytest.mark.parametrize("writer", [write_brep, write_iges])

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -13,8 +14,10 @@ from geofit.cad.faces import edges_with_faces, to_geom
 from geofit.cad.read_back import read_back, self_intersects
 from geofit.cad.step import read_shapes, read_step, step_surfaces, write_step
 from geofit.cad.step_text import canonical
+from geofit.checks.outside import BEYOND, outside
 from geofit.data.errors import InputError, StitchError
 from geofit.data.points import PointSet
+from geofit.fitting.judge import judge
 from geofit.splines.patch import Patch
 
 
@@ -193,6 +196,51 @@ def test_points_on_a_patch_that_the_file_does_not_contain_are_left_out_and_count
     figures = {key: text.params[key] for key in ("count", "left", "core")}
     assert figures == {"count": (core & ~absent).sum(), "left": absent.sum(), "core": (core & absent).sum()}
     assert figures["core"] > 0
+
+
+@pytest.mark.parametrize(("unit", "origin"), [("m", "map"), ("mm", "local")])
+@pytest.mark.parametrize("margin", [20.0, 0.0])
+def test_a_file_gets_the_verdict_of_its_fit_with_a_whole_patch_outside_the_study_area(tmp_path, unit, origin, margin):
+    """Points in the notch had been measured to the edge of the other patches: 49 m instead of 2e-5 m."""
+    whole, parts = nine()
+    points, core, d = sampled(whole)
+    notch = parts[-1].control.min(axis=(0, 1))[:2] - margin
+    surface = horizon(parts, points, core, outline=without_patch(*notch))
+    write_step({"T0": horizon(parts), "T1": surface}, tmp_path / "l.step", unit=unit, origin=origin)
+    assert [len(shape.face_names) for shape in read_shapes(tmp_path / "l.step")] == [9, 8]
+    plain, back = read_step(tmp_path / "l.step").values()
+    assert (len(plain.patches), len(back.patches)) == (9, 9)
+    judged = judge(back, surface.points).accuracy
+    assert judged.sigma == pytest.approx(np.sqrt((d**2).sum() / (len(d) - 1)), rel=1e-6)
+    (beyond,) = [check for check in judged.checks if check.name == BEYOND]
+    assert beyond.value == outside(surface.outline, points).sum() > 0
+    write_step({"T1": back}, tmp_path / "again.step")
+    assert judge(read_step(tmp_path / "again.step")["T1"], surface.points).accuracy.sigma == pytest.approx(judged.sigma)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "by"),
+    [
+        ("'patches beyond the outline'", "''"),
+        (r"REPRESENTATION\('patches beyond the outline',\(#", "REPRESENTATION('patches beyond the outline',(#9999"),
+        (r"(REPRESENTATION\('patches beyond the outline',)", r"\1 "),
+        (r"(B_SPLINE_SURFACE_WITH_KNOTS\('[^']*',3),", r"\1 ,"),
+    ],
+    ids=["unnamed", "another number", "another spacing", "surfaces spaced"],
+)
+def test_a_file_that_lost_the_patches_beyond_its_outline_is_measured_to_its_edge(tmp_path, pattern, by):
+    whole, parts = nine()
+    points, core, d = sampled(whole)
+    surface = horizon(parts, points, core, outline=without_patch(*parts[-1].control.min(axis=(0, 1))[:2] - 20.0))
+    write_step({"T1": surface}, tmp_path / "l.step")
+    text = (tmp_path / "l.step").read_text("ascii")
+    changed = re.sub(pattern, by, text)
+    assert changed != text
+    (tmp_path / "l.step").write_text(changed, "ascii")
+    judged = judge(read_step(tmp_path / "l.step")["T1"], surface.points).accuracy
+    assert judged.sigma > 100 * np.abs(d).max()
+    (beyond,) = [check for check in judged.checks if check.name == BEYOND]
+    assert beyond.text.params["within"] < np.abs(d).max()
 
 
 def test_a_core_outside_the_study_area_is_not_measured_in_the_file(tmp_path):

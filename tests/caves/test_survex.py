@@ -68,7 +68,7 @@ def test_declination_in_both_spellings(svx):
 def test_plumbs_equates_and_fixes(svx):
     found = svx(
         "1 2 5 - UP\n2 3 5 - -V\n*infer plumbs on\n*calibrate clino 3\n3 4 5 0 -90\n*infer equates on\n4 5 0 0 0\n"
-        "*equate 5 6 7\n7 8 5 90 3\n*fix 1 100 200 300\n*fix nowhere 0 0 0\n"
+        "*equate 5 6 7\n7 8 5 90 3\n*fix 1 100 200 300\n*fix nowhere 0 0 0\n*declination 0 degrees\n"
     )
     np.testing.assert_allclose(found.offset, [[0, 0, 5], [0, 0, -5], [0, 0, -5], [5, 0, 0]], atol=1e-12)
     assert found.stations == ("1", "2", "3", "4", "8")
@@ -295,6 +295,21 @@ def test_shots_without_a_correction_that_cannot_be_read_are_counted(svx, command
     assert (warning.severity, warning.row, warning.value) == ("warning", 3, command)
     assert (warning.reason.params["count"], str(warning.reason.params["what"])) == (2, what)
     assert warning.remedy
+
+
+@pytest.mark.parametrize(
+    ("fixed", "stated", "warned"),
+    [
+        ("500000 4100000 30", "", True),
+        ("500000 4100000 30", "*declination 0 degrees", False),
+        ("500000 4100000 30", "*calibrate declination -3", False),
+        ("0 0 0", "", False),
+    ],
+)
+def test_bearings_of_a_cave_on_the_map_need_a_declination(svx, fixed, stated, warned):
+    found = svx(f"{stated}\n*fix 1 {fixed}\n1 2 10 86 0\n2 3 10 - up\n3 4 10 10 3\n")
+    counts = [issue.reason.params["count"] for issue in found.issues if issue.reason.code == "io.shots-uncorrected"]
+    assert counts == [2] * warned
 
 
 def test_a_correction_that_is_stated_anew_is_read(svx):

@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 from commands import run
 
+from geofit.io import read_body
+
 DATA = Path(os.environ.get("GEOFIT_DATA", Path(__file__).parents[2].parent / "shared" / "data"))
 EAST, NORTH = 500_000.0, 3_100_000.0
 
@@ -91,6 +93,23 @@ def test_body_from_a_collar_table_is_the_ellipsoid_that_was_drilled(drilled, mon
     assert figures["sigma"] == pytest.approx(
         np.sqrt(sum(float(row["residual_m"]) ** 2 for row in rows) / (len(rows) - 1)), abs=1e-8
     )
+
+
+def test_body_has_triangles_of_the_spacing_that_is_asked_for(drilled, monkeypatch, capsys):
+    tables = (drilled / "collar.csv", "--intervals", drilled / "lithology.csv", "--code", "ORE")
+    longest = []
+    for spacing in (8.0, 4.0):
+        out = drilled / f"o{spacing:g}"
+        code, _, err = run(monkeypatch, capsys, "body", *tables, "--spacing", str(spacing), "--out", out)
+        assert code == 0, err
+        body = read_body(out / "ORE.stl")
+        assert body.volume == pytest.approx(4 / 3 * np.pi * 60 * 45 * 30, rel=0.1)
+        corners = body.vertices[body.triangles]
+        longest.append(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max())
+        assert longest[-1] < np.sqrt(3) * spacing
+    assert longest[1] < 0.6 * longest[0]
+    code, _, err = run(monkeypatch, capsys, "body", *tables, "--spacing", "0", "--out", drilled / "none")
+    assert (code, (drilled / "none").exists()) == (2, False), err
 
 
 def test_body_lists_every_row_of_holes_that_it_does_not_use(drilled, monkeypatch, capsys):

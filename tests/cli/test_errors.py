@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+from contextlib import suppress
+from pathlib import Path
 
 import pytest
 from commands import run
@@ -79,3 +82,16 @@ def test_a_stop_is_a_document_with_130(capsys):
     data = json.loads(capsys.readouterr().out)
     assert stop.value.exit_code == data["exit_code"] == 130
     assert data["reason"]["code"] == "cli.stopped"
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="Linux has a disk that is always full")
+def test_a_full_disk_under_stdout_is_one_line_too(tmp_path, monkeypatch, capsys):
+    """Writing the error's document there had ended in a traceback."""
+    with Path("/dev/full").open("w", buffering=1) as full, monkeypatch.context() as patched:
+        patched.setattr("sys.stdout", full)
+        left, _, told = run(patched, capsys, "check", tmp_path / "none.step", tmp_path / "none.csv", "--json")
+        patched.undo()
+        with suppress(OSError):
+            full.close()
+    assert left == 2
+    assert told.splitlines()[-1].startswith("geofit: ")

@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 import pytest
+from refusals import refused
 
 from geofit.data.errors import InputError
 from geofit.data.files import is_file, replacing, spreadsheet_cell
@@ -86,6 +87,18 @@ def test_names_that_are_no_files(tmp_path):
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="names are bytes on Linux only")
+@posix
+def test_a_pipe_or_a_device_is_not_replaced(tmp_path):
+    """As root, --out /dev/full had made a file of the device, for every program of the machine."""
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "link").symlink_to(tmp_path / "pipe")
+    for name in ("pipe", "link"):
+        with refused(InputError, "data.output-not-file"), replacing(tmp_path / name) as part:
+            part.write_text("whole")
+    assert (tmp_path / "pipe").is_fifo()
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["link", "pipe"]
+
+
 def test_names_in_gbk_are_legible():
     assert legible(os.fsdecode("强风化.csv".encode("gbk"))) == "强风化.csv"
     legible(os.fsdecode(b"\xff\xfe\x80")).encode()

@@ -101,6 +101,33 @@ def test_nan_stands_for_an_accuracy_that_is_not_stated():
     assert np.isnan(points.accuracy[[0, 2]]).all()
 
 
+class Frame:
+    """What a table of pandas or polars has of what is asked for."""
+
+    def __init__(self, **columns):
+        self.columns, self._of = list(columns), columns
+
+    def __getitem__(self, name):
+        return self._of[name]
+
+    def __array__(self, dtype=None, copy=None):
+        return np.array(list(self._of.values()), dtype=dtype).T
+
+
+@pytest.mark.parametrize("order", ["xyz", "zyx", "yXZ"])
+def test_a_table_is_read_by_the_names_of_its_columns(order):
+    """The columns z, x, y had been taken for easting, northing and elevation."""
+    columns = {name: np.array(XYZ)[:, "xyz".index(name.lower())] for name in order}
+    structured = np.zeros(3, [(name, "f4") for name in order])
+    for name, values in columns.items():
+        structured[name] = values
+    for table in (Frame(**columns), Frame(**columns, horizon=["T1", "T1", "T2"]), structured):
+        np.testing.assert_array_equal(PointSet(table).xyz, XYZ)
+    assert PointSet(Frame(a=[0.0, 1.0], b=[2.0, 3.0], c=[4.0, 5.0])).xyz.tolist() == [[0, 2, 4], [1, 3, 5]]
+    with refused(PointsError, "data.coordinates-not-numbers"):
+        PointSet(Frame(x=["a"], y=[1.0], z=[2.0]))
+
+
 def test_a_masked_accuracy_is_not_stated():
     points = three(accuracy=np.ma.masked_less([-1.0, 0.5, 0.2], 0))
     np.testing.assert_array_equal(points.accuracy, [np.nan, 0.5, 0.2])
@@ -209,7 +236,9 @@ def geographic(n=12, seed=0, extent=0.02, middle=(110.123, 30.456), relief=40.0)
 @pytest.mark.parametrize("middle", [(110.1, 30.4), (-70.2, -33.4), (0.01, 51.5), (178.5, -16.2), (25.0, 0.02)])
 @pytest.mark.parametrize("extent", [0.002, 0.05, 1.5])
 def test_longitude_and_latitude_are_known_by_their_values(middle, extent):
-    assert look_like_degrees(geographic(extent=extent, middle=middle))
+    xyz = geographic(extent=extent, middle=middle)
+    assert look_like_degrees(xyz)
+    assert look_like_degrees(xyz[:, [1, 0, 2]]), "latitude first, as most maps of the web have it"
 
 
 @pytest.mark.parametrize(

@@ -139,6 +139,20 @@ def test_declination_turns_the_azimuths(write):
     np.testing.assert_allclose(magnetic.holes[1].xyz[-1], [75, 0, 103 - 50 * np.sin(np.pi / 3)], atol=1e-9)
 
 
+@pytest.mark.parametrize("header", ["Azimuth (mag)", "Mag. Azimuth", "AZI MAG", "磁方位角"])
+@pytest.mark.parametrize("inclined", [True, False])
+def test_magnetic_azimuths_without_a_declination_are_warned_of(write, header, inclined):
+    dip = 60 if inclined else 90
+    survey = write(f"hole,depth,{header},dip\nB,0,80,{dip}\n", "survey.csv")
+    collar = write(COLLARS, "collar.csv")
+    for declination, warned in ((None, inclined), (0.0, False), (-3.0, False)):
+        found = read_boreholes(collar, survey, dip="down-positive", declination=declination)
+        warnings = [issue.column for issue in found.issues if issue.reason.code == "io.azimuths-magnetic"]
+        assert warnings == [header] * warned
+    both = write(f"hole,depth,{header},grid azimuth,dip\nB,0,80,90,60\n", "both.csv")
+    np.testing.assert_allclose(read_boreholes(collar, both, dip="down-positive").holes[1].xyz[-1][0], 75.0)
+
+
 @pytest.mark.parametrize(("mark", "full"), [("gon", 400.0), ("rad", 2 * np.pi)])
 def test_angles_in_other_units_are_converted(write, mark, full):
     collar = write(COLLARS, "collar.csv")

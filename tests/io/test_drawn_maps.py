@@ -5,6 +5,7 @@ from __future__ import annotations
 import ezdxf
 import numpy as np
 import pytest
+from refusals import with_code
 
 from geofit.data.errors import InputError
 from geofit.io import read_site
@@ -192,7 +193,9 @@ def test_feet_of_a_map(folder):
     read, _ = site(folder, '[traces]\nfile = "map.dxf"\nunit = "ft"\n')
     np.testing.assert_allclose(read.horizons["F1"].xyz[0], [500100, 3100100, 520])
     (folder / "site.toml").write_text('[traces]\nfile = "map.dxf"\n')
-    assert any("its unit is feet" in str(issue.reason) for issue in read_site(folder / "site.toml").issues)
+    read = read_site(folder / "site.toml")
+    np.testing.assert_allclose(read.horizons["F1"].xyz[0], [500100, 3100100, 520])
+    assert with_code([issue.reason for issue in read.issues], "io.drawing-unit-converted").params["unit"] == "feet"
 
 
 def test_a_plan_is_imported_as_the_mapping_says(folder):

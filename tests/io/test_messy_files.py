@@ -112,6 +112,20 @@ def test_a_northing_under_x_is_warned_of(read, campaign, header, warned, zone):
     assert bool(of(found, "io.axes-like-exchanged")) is warned
 
 
+def test_northings_taken_for_elevations_are_warned_of(read, campaign):
+    rows = [(hole, z, x, y, depth) for hole, x, y, z, depth in campaign.collars()]
+    (impossible,) = of(read("hole,x,y,z,depth\n" + table((), rows)), "io.elevations-not-possible")
+    assert (impossible.severity, impossible.column) == ("warning", "z")
+    assert not of(read(), "io.elevations-not-possible")
+
+
+def test_latitudes_under_x_are_warned_of_too(write):
+    rng = np.random.default_rng(0)
+    rows = np.column_stack([rng.uniform(30, 30.02, 30), rng.uniform(110, 110.02, 30), rng.uniform(700, 800, 30)])
+    path = write("x,y,z\n" + "".join("{:.6f},{:.6f},{:.2f}\n".format(*row) for row in rows.tolist()), "p.csv")
+    assert len([one for one in read_points(path).issues if one.reason.code == "io.places-like-degrees"]) == 1
+
+
 @pytest.mark.parametrize("first", [0, 1])
 def test_half_of_the_collars_exchanged_is_warned_of(read, campaign, first):
     rows = [
@@ -255,7 +269,7 @@ def test_the_attitude_of_the_collar_begins_a_survey(read, campaign):
     ("angles", "warned"),
     [
         ({"azimuth": 45, "inclination": -60}, ("azimuth", "dip", "inclination")),
-        ({"mag_az": 45, "dip": -60}, ("dip", "azimuth", "mag_az")),
+        ({"tool_az": 45, "dip": -60}, ("dip", "azimuth", "tool_az")),
         ({"azimuth": 0, "remark": "ok"}, None),
         ({"dip": -90, "remark": "ok"}, None),
         ({"azimuth": 45, "dip": -60}, None),

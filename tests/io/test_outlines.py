@@ -96,15 +96,22 @@ def test_a_layer_without_a_closed_line_says_what_is_on_it(tmp_path, draw, code, 
     assert len(wrong.value.issues) == (draw != "nothing")
 
 
-def test_a_unit_that_a_drawing_states_is_warned_of_until_it_is_given(tmp_path):
+@pytest.mark.parametrize(
+    ("unit", "metres", "issues"),
+    [
+        (None, 0.3048, [("warning", "io.drawing-unit-converted")]),
+        ("ft", 0.3048, [("note", "io.stated-unit-converted")]),
+        ("m", 1.0, []),
+    ],
+)
+def test_a_drawing_is_read_in_the_unit_that_it_states_or_that_is_given(tmp_path, unit, metres, issues):
     document = ezdxf.new("R2010", units=ezdxf.units.FT)
     for x in (0.0, 10.0):
         document.modelspace().add_polyline3d(ring(x).tolist(), close=True, dxfattribs={"layer": "ORE"})
     document.saveas(tmp_path / "ore.dxf")
-    ignored, read = read_outlines(tmp_path / "ore.dxf"), read_outlines(tmp_path / "ore.dxf", unit="ft")
-    assert [(issue.severity, issue.reason.code) for issue in ignored.issues] == [("warning", "io.drawing-unit-ignored")]
-    assert [(issue.severity, issue.reason.code) for issue in read.issues] == [("note", "io.stated-unit-converted")]
-    np.testing.assert_allclose(read.outlines[1].xyz, 0.3048 * ignored.outlines[1].xyz)
+    read = read_outlines(tmp_path / "ore.dxf", unit=unit)
+    assert [(issue.severity, issue.reason.code) for issue in read.issues] == issues
+    np.testing.assert_allclose(read.outlines[1].xyz, metres * ring(10.0))
 
 
 def test_the_unit_of_geojson_and_points_is_given_and_that_of_a_site_file_is_its_own(tmp_path):

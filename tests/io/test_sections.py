@@ -23,9 +23,9 @@ def drawing(tmp_path):
     return document.modelspace(), lambda: (document.saveas(tmp_path / "C1.dxf"), tmp_path / "C1.dxf")[1]
 
 
-def load(path, names=("A", "B"), **how):
+def load(path, names=("A", "B"), *, stated=None, **how):
     journal = Journal()
-    points = load_section(Source(path=path), SECTION, Drawing(**how), HorizonNames(names), journal)
+    points = load_section(Source(path=path, **(stated or {})), SECTION, Drawing(**how), HorizonNames(names), journal)
     (count,) = journal.counts
     assert count.read == count.used + count.listed == sum(map(len, points.values())) + count.listed
     return points, journal
@@ -82,6 +82,35 @@ def test_rarer_units_of_a_drawing_are_warned_of(drawing, code, unit):
     space.add_lwpolyline([(0, 80), (9, 81)], dxfattribs={"layer": "A"})
     _, journal = load(save())
     assert [str(issue.reason.params["unit"]) for issue in journal.issues if issue.severity == "warning"] == [unit]
+
+
+@pytest.mark.parametrize(
+    ("stated", "metres", "code"),
+    [
+        ({}, 0.3048, "io.drawing-unit-converted"),
+        ({"usual_unit": "m"}, 0.3048, "io.drawing-unit-converted"),
+        ({"usual_unit": "ft"}, 0.3048, "io.stated-unit-converted"),
+        ({"unit": "m"}, 1.0, ""),
+        ({"unit": "ft-us"}, 1200 / 3937, "io.stated-unit-converted"),
+    ],
+)
+def test_a_drawing_in_feet_is_converted_unless_the_user_states_its_unit(drawing, stated, metres, code):
+    space, save = drawing
+    space.doc.header["$INSUNITS"] = 2
+    space.add_lwpolyline([(0, 80), (1000, 81)], dxfattribs={"layer": "A"})
+    points, journal = load(save(), stated=stated)
+    np.testing.assert_allclose(points["A"].xyz[:, 2], np.array([80, 81]) * metres)
+    assert [issue.reason.code for issue in journal.issues] == [code] * bool(code)
+
+
+@pytest.mark.parametrize(("drawing_unit", "scale", "z"), [(2, 3.28084, 80 / 3.28084), (4, 1.0, 80.0), (1, 1.0, 80.0)])
+def test_a_scale_counts_before_the_unit_and_that_of_a_template_does_not(drawing, drawing_unit, scale, z):
+    space, save = drawing
+    space.doc.header["$INSUNITS"] = drawing_unit
+    space.add_lwpolyline([(0, 80), (100, 80)], dxfattribs={"layer": "A"})
+    points, journal = load(save(), scale=scale)
+    np.testing.assert_allclose(points["A"].xyz[:, 2], z)
+    assert [issue.reason.code for issue in journal.issues] == ["io.drawing-unit-ignored"] * (scale == 1.0)
 
 
 def test_what_is_not_used_is_listed(drawing):

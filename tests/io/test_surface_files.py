@@ -302,9 +302,15 @@ def test_a_folder_is_not_called_a_missing_file(name, tmp_path):
 
 @pytest.mark.parametrize(
     ("units", "factors"),
-    [('"m" "m" "m"', (1, 1, 1)), ('" m " " m " " ft "', (1, 1, 0.3048)), ("ft ft ft", (0.3048,) * 3)],
+    [
+        ('"m" "m" "m"', (1, 1, 1)),
+        ('" m " " m " " ft "', (1, 1, 0.3048)),
+        ("ft ft ft", (0.3048,) * 3),
+        ('"none" "None" "ft"', (1, 1, 0.3048)),
+        ('"" "unitless" "unknown"', (1, 1, 1)),
+    ],
 )
-def test_units_of_a_tsurf_may_have_blanks(units, factors, tmp_path):
+def test_units_of_a_tsurf_may_have_blanks_or_be_none(units, factors, tmp_path):
     """As points, such a file had counted its elevations by the unit of another axis, or none."""
     from geofit.io import read_points
 
@@ -312,8 +318,10 @@ def test_units_of_a_tsurf_may_have_blanks(units, factors, tmp_path):
     (surface,) = read_surfaces(tmp_path / "a.ts").values()
     places = np.array([[0, 0, 10], [100, 0, 20], [0, 100, 30]]) * factors
     assert_allclose(surface.mesh.xyz, places)
-    (points,) = read_points(tmp_path / "a.ts").horizons.values()
+    found = read_points(tmp_path / "a.ts")
+    (points,) = found.horizons.values()
     assert_allclose(points.xyz, places)
+    assert "io.unit-of-column-unknown" not in [issue.reason.code for issue in found.issues]
 
 
 @pytest.mark.parametrize(
@@ -324,6 +332,13 @@ def test_a_tsurf_has_its_name_in_each_form_of_the_header(head, tmp_path):
 
     (tmp_path / "a.ts").write_text("GOCAD TSurf 1\n" + head + TRIANGLE)
     assert list(read_surfaces(tmp_path / "a.ts")) == list(read_points(tmp_path / "a.ts").horizons) == ["Top T1"]
+
+
+def test_control_characters_in_a_name_leave_a_tsurf_readable(tmp_path):
+    """A NUL in the name of a horizon had made the whole file "not text"."""
+    mesh = horizon([height_field()], name="T").triangulate(5.0)
+    write_tsurf({"a\0b\x07\nc": mesh}, tmp_path / "a.ts")
+    assert list(read_surfaces(tmp_path / "a.ts")) == ["a b c"]
 
 
 def test_a_mark_for_no_data_is_no_elevation(tmp_path):

@@ -37,6 +37,11 @@ def test_german_letters(write, encoding):
     assert (table.sep, table.decimal) == (";", ",")
 
 
+def test_cyrillic_letters(write):
+    table, _ = read(write("x;y;z;horizon\n1,5;2;3;Кровля\n1,5;2;4;Подошва слоя\n", encoding="cp1251"))
+    assert (table.encoding, table.columns[3]) == ("cp1251", ("Кровля", "Подошва слоя"))
+
+
 @pytest.mark.parametrize(
     ("text", "sep", "decimal"),
     [
@@ -49,6 +54,11 @@ def test_german_letters(write, encoding):
         ("  x y  z\n 1,5 2,5   3\n", " ", ","),
         ("x;y;z\n" + "1;2;3\n" * 500 + "1,5;2;3\n", ";", ","),
         ("x;y;z\n1.5;2;a, b, c\n1.5;2;d, e\n", ";", "."),
+        ("x;y;z\n500.636,96;4.300.550,76;1.220,23\n500.040,97;4.300.531,89;1.242,66\n", ";", ","),
+        ("x;y;z\n500,636.96;4,300,550.76;1,220.23\n500,040.97;4,300,531.89;1,242.66\n", ";", "."),
+        ("x y z\n500.636,96 4.300.550,76 1.220,23\n500.040,97 4.300.531,89 1.242,66\n", " ", ","),
+        ('x,y,z\n"500636,96","4300550,7","1220,2"\n"500040,97","4300531,8",1242\n', ",", ","),
+        ("x;y;z\n500.637;4.300.551;1.220\n", ";", ","),
     ],
 )
 def test_separator_and_decimal_mark(write, text, sep, decimal):
@@ -134,6 +144,18 @@ def test_decimal_mark_is_that_of_numbers_with_both_marks(write, text, decimal):
     table, _ = read(write(f"x;y\n{text}\n"))
     assert table.decimal == decimal
     assert parse_numbers(table.columns[1], decimal)[1].tolist() == [0]  # 1234, or a slip for 1.234
+
+
+@pytest.mark.parametrize(
+    ("row", "mark", "other"),
+    [("500.637;4.300.551;1.220", ",", "."), ("500,637;4,300,551;1,220", ".", ","), ("1.5;2,5;3,5", ",", ".")],
+)
+def test_numbers_with_two_decimal_marks_name_both(write, row, mark, other):
+    with pytest.raises(InputError) as caught:
+        points_of(write(f"x;y;z\n{row}\n"))
+    reasons = [issue.reason for issue in caught.value.issues if issue.severity == "error"]
+    assert {reason.code for reason in reasons} == {"io.cell-of-other-decimal"}
+    assert (reasons[0].params["mark"], reasons[0].params["other"]) == (mark, other)
 
 
 def test_first_row_of_thousands_is_no_header(write):
