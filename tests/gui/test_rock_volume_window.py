@@ -259,7 +259,7 @@ def test_a_window_that_is_closed_goes_with_its_volume(qtbot, tmp_path):
         dialog.reject()
 
     QTimer.singleShot(200, work)
-    Help(window).rock_volume()
+    Help(window, lambda: "view").rock_volume()
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     gc.collect()
     assert window.findChildren(RockVolumeDialog) == []
