@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,10 +25,8 @@ from geofit.data.accuracy import Check
 from geofit.data.errors import InputError, StitchError
 from geofit.data.files import replacing
 from geofit.data.messages import message
+from geofit.implicit.closed_body import ClosedBody
 from geofit.splines.patch import Patch
-
-if TYPE_CHECKING:
-    from geofit.bodies.implicit_body import ImplicitBody
 
 __all__ = ["write_body"]
 
@@ -39,7 +37,7 @@ TIMESTAMP = "2000-01-01T00:00:00"
 
 
 def write_body(
-    body: ImplicitBody,
+    body: ClosedBody,
     path: str | PathLike[str],
     patches: Sequence[Sequence[Patch]] = (),
     reason: str = "",
@@ -50,7 +48,7 @@ def write_body(
 
     Parameters
     ----------
-    body : ImplicitBody
+    body : ClosedBody
         The body.
     path : path
         The file, usually ``*.step``.
@@ -121,7 +119,7 @@ def _parameters(*, nurbs: bool) -> Iterator[None]:
 
 
 def _write(
-    shape: Any, body: ImplicitBody, target: Path, offset: Floats, attributes: Mapping[str, str], stated: StepFields, *,
+    shape: Any, body: ClosedBody, target: Path, offset: Floats, attributes: Mapping[str, str], stated: StepFields, *,
     nurbs: bool,
 ) -> None:  # fmt: skip
     from OCP.APIHeaderSection import APIHeaderSection_MakeHeader

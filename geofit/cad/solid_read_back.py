@@ -21,9 +21,9 @@ from geofit.data.messages import message, plural_message
 from geofit.implicit.mesh import TriangleMesh
 
 if TYPE_CHECKING:
-    from geofit.bodies.implicit_body import ImplicitBody
     from geofit.cad.imported import FileShape
     from geofit.geometry.mesh import Mesh
+    from geofit.implicit.closed_body import ClosedBody
 
 __all__ = ["SolidReadBack", "read_back_body"]
 
@@ -71,7 +71,7 @@ class SolidReadBack:
 
 
 def read_back_body(
-    body: ImplicitBody, target: Path, attributes: Mapping[str, str], *, nurbs: bool, trimmed: bool
+    body: ClosedBody, target: Path, attributes: Mapping[str, str], *, nurbs: bool, trimmed: bool
 ) -> SolidReadBack:
     """Read the file of a body and check it: NURBS or triangles, faces trimmed or whole; and its ``attributes``."""
     from OCP.BRep import BRep_Tool
@@ -289,7 +289,7 @@ def _joined(meshes: Sequence[TriangleMesh]) -> Mesh:
     return Mesh(points, triangles, patch, np.zeros((len(triangles), 3, 2)), np.zeros(3), ("",))
 
 
-def _place_check(body: ImplicitBody, product: FileShape) -> Check:
+def _place_check(body: ClosedBody, product: FileShape) -> Check:
     """Check that the file, with the offset that it states, puts the body where it is in the map."""
     part = product.location.Transformation().TranslationPart()
     off = float(np.abs(np.array([part.X(), part.Y(), part.Z()]) - body.origin).max())

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +18,8 @@ from geofit import __version__
 from geofit.cad.step_origin import OFFSET_KEYS
 from geofit.cad.step_text import products_of
 from geofit.data.accuracy import Accuracy
+from geofit.implicit.closed_body import ClosedBody
 from geofit.surfaces.protocol import FittedSurface
-
-if TYPE_CHECKING:
-    from geofit.bodies.accuracy import BodyAccuracy
-    from geofit.bodies.implicit_body import ImplicitBody
 
 __all__ = [
     "CONTINUED",
@@ -60,7 +57,7 @@ def attributes_of(surface: FittedSurface) -> dict[str, str]:
     return _in_order(found, accuracy)
 
 
-def attributes_of_body(body: ImplicitBody) -> dict[str, str]:
+def attributes_of_body(body: ClosedBody) -> dict[str, str]:
     """Return the attributes of a body: its points are the contacts; what was not fitted has no sigma."""
     found = {"geofit_version": __version__}
     if len(body.contacts):
@@ -68,7 +65,7 @@ def attributes_of_body(body: ImplicitBody) -> dict[str, str]:
     return _in_order(found, getattr(body, "accuracy", None))
 
 
-def _in_order(found: dict[str, str], accuracy: Accuracy | BodyAccuracy | None) -> dict[str, str]:
+def _in_order(found: dict[str, str], accuracy: Accuracy | None) -> dict[str, str]:
     if accuracy is not None and accuracy.n:
         found["sigma_m"] = f"{accuracy.sigma:.6g}"
         found["epsilon_m"] = f"{accuracy.epsilon:.6g}"
