@@ -155,7 +155,7 @@ class Delivering(QObject):
             bodies = {
                 name: body
                 for name in self._document.state.bodies
-                if (body := dated_body(self._document, name)) is not None and body.fitted is not None
+                if (body := dated_body(self._document, name)) is not None
             }
             dialog = ReportDialog(site, results, self._window, self._document.blocks(), self._folder(), bodies)
             dialog.written.connect(self.list_report)

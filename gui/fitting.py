@@ -261,6 +261,9 @@ class Fitting(QObject):
         provenance = self._document.provenance(now)
         surface = self._document.shelf.surface(provenance)
         if surface is not None and surface.model is not None:
+            if self._document.state.provenances.get(now) == provenance:
+                text = self.tr("{name} is up to date: data and settings are those of its fit.")
+                self.reported.emit(text.format(name=now))
             self._fitted(provenance, surface)
             return None
         return made, (provenance, self._document.given_for(provenance))

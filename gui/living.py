@@ -187,6 +187,7 @@ class Living(QObject):
     def _take(self, site: Site, tables: tuple[str, ...], order: tuple[str, ...] = ()) -> None:
         """Work on with other data; new horizons stand where ``order`` has them, the highest first."""
         document = self._document
+        before = set(document.read.horizons)
         change = change_of_data(document.state, document.read, site, tables)
         if order:
             settings = change.command.settings
@@ -211,7 +212,9 @@ class Living(QObject):
         if change.carried:
             words.append(translated(carried))
         self.reported.emit(" · ".join(words) or self.tr("The files have changed, but their points have not."))
-        self._panels.reveal("changes")
+        # A horizon that is new has nothing to be compared with.
+        if change.lost or not words or any(one.any and one.horizon in before for one in change.arrivals):
+            self._panels.reveal("changes")
 
     def show(self) -> None:
         """Show how the chosen horizon moved, or what there is to say before that is known."""

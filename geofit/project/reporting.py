@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from geofit.data.languages import language
-from geofit.data.messages import Message, message
+from geofit.data.messages import Message, Untranslated, message
 from geofit.data.prediction import PredictionResult
 from geofit.data.progress import Progress, tell
 from geofit.data.stale import stale_warning
@@ -49,14 +49,14 @@ def write_report_files(
     """Write the accuracy report of surfaces; errors as :func:`geofit.project.run.write_reports`.
 
     ``code`` is the language's ("en", "zh"): its catalogue need not travel to another process. ``bodies`` that were
-    fitted get a chapter each.
+    fitted get a chapter each; of others the summary states that there is none.
     """
     tell(progress, "order", 0.0)
     fits = site_fit({result.name: result.surface for result in results}, blocks, progress)
     parts, failed = _parts(bodies or {}, results, code, progress)
     made = write_reports(
         results, folder, progress, language=language(code), forms=forms, examined=examined, date=date, fits=fits,
-        bodies=parts,
+        bodies=parts, notes=failed,
     )  # fmt: skip
     new = {
         after.name: after.prediction
@@ -78,6 +78,14 @@ def _parts(
     for name, result in bodies.items():
         body, volumes = result.fitted, result.volumes
         if body is None or volumes is None:
+            # A closed mesh from a file, or a fit of an opened project that is still being made again.
+            failed.append(
+                message(
+                    "project.body-without-fit",
+                    "Body {name} has no chapter: its triangles are available, but no fit.",
+                    name=Untranslated(name),
+                )
+            )
             continue
         tell(progress, message("data.stage-of-name", "{name}: {stage}", name=name, stage="body"), 0.0)
         part = body_part(replace(body, name=name), volumes, None, horizons, language(code), stale=result.stale)

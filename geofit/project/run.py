@@ -306,7 +306,7 @@ def _examined(
     tasks: list[Callable[[], Made | Message | Pictures]] = [
         partial(
             write_horizon, fits.surfaces[name], site, files.stem(name), language.code, fits.seconds[name], bands,
-            sections, where, signed, fits.horizon[name], _checks(orders, fits.horizon[name]),
+            sections, where, signed, fits.horizon[name], _checks(orders, name),
         )
         for name in order
     ]  # fmt: skip
@@ -358,6 +358,7 @@ def write_reports(
     date: str = "",
     fits: SiteFit | None = None,
     bodies: Sequence[BodyPart] = (),
+    notes: Sequence[Message] = (),
 ) -> Reports:
     """Write the accuracy report of surfaces that are there already; nothing else is written.
 
@@ -383,6 +384,8 @@ def write_reports(
         Where some of the surfaces are blocks of faulted horizons: of which, and what the faults displace.
     bodies : sequence of BodyPart
         Chapters of bodies, in their order.
+    notes : sequence of Message
+        What else the reader must know, for the summary.
 
     Raises
     ------
@@ -433,13 +436,13 @@ def write_reports(
         surfaces = {result.name: result.surface for result in made}
         fits = SiteFit(surfaces, {name: name for name in surfaces})
     orders, unordered = _orders(made[0].site, fits)
-    made = [replace(one, orders=_checks(orders or (), fits.horizon[one.name])) for one in made]
+    made = [replace(one, orders=_checks(orders or (), one.name)) for one in made]
     report = accuracy_report(made, orders, cuts=fits.cuts, date=date, sections=sections)
     if pictured:
         images |= draw_sections(made, sections, language)
     whole, font = draw_site(made, language) if pictured else Pictures({}, None, None), _font_warning(made)
     tell(progress, "report", 0.95)
-    _write_report(report, whole, images, out, language, font, forms, bodies)
+    _write_report(report, whole, images, out, language, font, forms, bodies, notes)
     return Reports(
         report_paths(out, forms),
         tuple(text for text in (font, *warnings, unordered, whole.missing) if text),
@@ -481,9 +484,9 @@ def _orders(site: Site, fits: SiteFit) -> tuple[tuple[Order, ...] | None, Messag
     return compared, missing[0] if missing else EMPTY
 
 
-def _checks(orders: Sequence[Order], horizon: str) -> tuple[Check, ...]:
-    """Return how a horizon lies to others: part of the verdict."""
-    return tuple(order.check() for order in orders if horizon in (order.upper, order.lower))
+def _checks(orders: Sequence[Order], name: str) -> tuple[Check, ...]:
+    """Return how a horizon, of a faulted one a block, lies to others: part of the verdict."""
+    return tuple(order.check() for order in orders if name in (order.upper, order.lower))
 
 
 def _write_report(
@@ -504,8 +507,8 @@ def _write_report(
 
     chapters, stale = [part.chapter for part in bodies], [part.name for part in bodies if part.stale]
     pages = document(
-        report, language, missing_picture=whole.missing, warning=warning, bodies=chapters, stale_bodies=stale,
-        notes=notes,
+        report, language, missing_picture=whole.missing, warning=warning, bodies=chapters,
+        body_rows=[part.row for part in bodies], stale_bodies=stale, notes=notes,
     )  # fmt: skip
     pictures = {**images, **whole.images}
     if "json" in forms:

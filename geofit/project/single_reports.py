@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from geofit.project.pores_run import PoresRun
     from geofit.project.step_files import Signed
     from geofit.report.body_chapter import BodyFindings
-    from geofit.report.document import Chapter, ReportDocument
+    from geofit.report.document import Cell, Chapter, ReportDocument
 
 __all__ = [
     "BodyPart",
@@ -125,11 +125,12 @@ def _findings(
 class BodyPart:
     """What a body leaves to the report of its site: a chapter, pictures, whether its sigma is below epsilon.
 
-    ``stale``: it is older than its data.
+    ``row`` is its verdict for the summary; ``stale``: it is older than its data.
     """
 
     name: str
     chapter: Chapter
+    row: tuple[Cell, ...]
     images: Mapping[str, bytes]
     passed: bool
     stale: bool = False
@@ -145,12 +146,13 @@ def body_part(
     stale: tuple[StaleCause, ...] = (),
 ) -> BodyPart | Message:
     """Lay out the chapter of a body that was fitted already; or return why that failed."""
-    from geofit.report.body_chapter import body_chapter
+    from geofit.report.body_chapter import body_chapter, body_row
 
     def part() -> BodyPart:
         found, images = _findings(body, volumes, read_back, horizons, t, progress)
         found = replace(found, stale=stale)
-        return BodyPart(body.name, body_chapter(found, t), images, found.accuracy.passed, bool(stale))
+        chapter, row = body_chapter(found, t), body_row(found, t)
+        return BodyPart(body.name, chapter, row, images, found.accuracy.passed, bool(stale))
 
     failed: list[Message] = []
     made = guarded(part, None, failed.append)
@@ -172,12 +174,12 @@ def _body_part(
     signed: Signed | None,
 ) -> BodyPart:  # fmt: skip
     from geofit.project.body_run import run_body
-    from geofit.report.body_chapter import body_chapter
+    from geofit.report.body_chapter import body_chapter, body_row
 
     t = language(language_code)
     run = run_body(site, stem.parent, codes=code, name=name, signed=signed, stem=stem.name)
     found, images = body_findings(run, horizons, t)
-    return BodyPart(name, body_chapter(found, t), images, run.accuracy.passed)
+    return BodyPart(name, body_chapter(found, t), body_row(found, t), images, run.accuracy.passed)
 
 
 def reaching(body: BodyFit, horizons: Mapping[str, Any]) -> dict[str, Any]:

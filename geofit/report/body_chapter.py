@@ -14,7 +14,7 @@ from geofit.data.stale import StaleCause
 from geofit.data.verdict import Verdict as Judged
 from geofit.data.verdict import verdict_of
 from geofit.report import digits
-from geofit.report.chapter_head import lamps_paragraph, verdict_badge
+from geofit.report.chapter_head import lamp_mark, lamps_paragraph, verdict_badge
 from geofit.report.checks_table import check_table
 from geofit.report.document import (
     Block,
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from geofit.bodies.strata import StratumVolume
     from geofit.cad.solid_read_back import SolidReadBack
 
-__all__ = ["BodyFindings", "body_chapter", "body_picture"]
+__all__ = ["BodyFindings", "body_chapter", "body_picture", "body_row"]
 
 #: Rows of a list; the JSON holds all of them.
 LONGEST = 20
@@ -85,6 +85,22 @@ class BodyFindings:
 def body_picture(what: str, name: str) -> str:
     """Return the name by which a report speaks of a picture of a body."""
     return f"body/{what}/{name}"
+
+
+def body_row(found: BodyFindings, t: Language) -> tuple[Cell, ...]:
+    """Return the body's row of the summary's verdicts."""
+    a = found.accuracy
+    _, checks, away = (lamp_mark(lamp, t) for lamp in found.verdict.lamps)
+    return (
+        found.body.name,
+        verdict_badge(found.verdict.word, t, stale=bool(found.stale)),
+        digits.metres(a.sigma),
+        digits.given(a.epsilon),
+        digits.metres(a.max_abs),
+        digits.count(a.n),
+        checks,
+        away,
+    )
 
 
 def body_chapter(found: BodyFindings, t: Language) -> Chapter:

@@ -7,17 +7,15 @@ from collections.abc import Sequence
 from geofit.data.languages import Language, sentence, translate
 from geofit.data.messages import Message
 from geofit.data.stale import stale_warning
-from geofit.data.verdict import Lamp
 from geofit.report import digits
 from geofit.report.accuracy_report import AccuracyReport, HorizonReport
 from geofit.report.annex import horizon_annex, inputs_annex
-from geofit.report.chapter_head import verdict_badge
+from geofit.report.chapter_head import lamp_mark, verdict_badge
 from geofit.report.cover import cover, reference
 from geofit.report.document import (
     Block,
     Cell,
     Chapter,
-    CheckMark,
     Column,
     Heading,
     Paragraph,
@@ -41,6 +39,7 @@ def document(
     missing_picture: Message | None = None,
     warning: Message | None = None,
     bodies: Sequence[Chapter] = (),
+    body_rows: Sequence[tuple[Cell, ...]] = (),
     stale_bodies: Sequence[str] = (),
     notes: Sequence[Message] = (),
 ) -> ReportDocument:
@@ -58,6 +57,8 @@ def document(
         Something the reader must know about the report itself, a missing font for one.
     bodies : sequence of Chapter
         Chapters of bodies, which follow those of the horizons.
+    body_rows : sequence of tuple
+        Their verdicts for the summary (:func:`geofit.report.body_chapter.body_row`).
     stale_bodies : sequence of str
         Which bodies are older than their data.
     notes : sequence of Message
@@ -73,7 +74,7 @@ def document(
     drawings = sections_chapter(report, t)
     chapters = [
         cover(title, facts, picture, report.date, t, warnings),
-        _summary(report, notes, stale, t),
+        _summary(report, body_rows, notes, stale, t),
         *([drawings] if drawings else []),
         *(horizon_chapter(horizon, t, missing_picture) for horizon in report.horizons),
         *bodies,
@@ -95,19 +96,19 @@ def document(
     )
 
 
-def _summary(report: AccuracyReport, notes: Sequence[Message], stale: Sequence[str], t: Language) -> Chapter:
-    blocks: list[Block] = [Heading(t("Verdict"))]
-    columns = (
-        Column(t("Horizon")),
-        Column(t("Verdict")),
-        Column(t("σ, m"), "number"),
-        Column(t("ε, m"), "number"),
-        Column(t("Largest |d|, m"), "number"),
-        Column(t("Points"), "number"),
-        Column(t("Checks"), "wide"),
-        Column(t("Away from the data"), "wide"),
-    )
-    blocks.append(ReportTable(columns, tuple(_verdict_row(horizon, t) for horizon in report.horizons)))
+def _summary(
+    report: AccuracyReport,
+    body_rows: Sequence[tuple[Cell, ...]],
+    notes: Sequence[Message],
+    stale: Sequence[str],
+    t: Language,
+) -> Chapter:
+    blocks: list[Block] = [
+        Heading(t("Verdict")),
+        _verdicts(t("Horizon"), [_verdict_row(horizon, t) for horizon in report.horizons], t),
+    ]
+    if body_rows:
+        blocks.append(_verdicts(t("Body"), body_rows, t))
     blocks.append(
         Paragraph(
             t(
@@ -128,8 +129,23 @@ def _summary(report: AccuracyReport, notes: Sequence[Message], stale: Sequence[s
     return Chapter(t("Summary"), tuple(blocks))
 
 
+def _verdicts(what: str, rows: Sequence[tuple[Cell, ...]], t: Language) -> ReportTable:
+    """Return the table of the verdicts; ``what`` titles the names."""
+    columns = (
+        Column(what),
+        Column(t("Verdict")),
+        Column(t("σ, m"), "number"),
+        Column(t("ε, m"), "number"),
+        Column(t("Largest |d|, m"), "number"),
+        Column(t("Points"), "number"),
+        Column(t("Checks"), "wide"),
+        Column(t("Away from the data"), "wide"),
+    )
+    return ReportTable(columns, tuple(rows))
+
+
 def _verdict_row(horizon: HorizonReport, t: Language) -> tuple[Cell, ...]:
-    _, checks, away = (_mark(lamp, t) for lamp in horizon.lamps)
+    _, checks, away = (lamp_mark(lamp, t) for lamp in horizon.lamps)
     return (
         horizon.name,
         verdict_badge(horizon.verdict, t, stale=bool(horizon.stale)),
@@ -140,8 +156,3 @@ def _verdict_row(horizon: HorizonReport, t: Language) -> tuple[Cell, ...]:
         checks,
         away,
     )
-
-
-def _mark(lamp: Lamp, t: Language) -> CheckMark:
-    text = translate(lamp.text, t)
-    return CheckMark({"pass": True, "fail": False}.get(lamp.level), f"! {text}" if lamp.level == "warning" else text)

@@ -37,8 +37,12 @@ Floats = NDArray[np.float64]
 
 #: Width of the sheet, of its drawing, margin on the left, and most height of the drawing, mm.
 SHEET, DRAWING, LEFT, TALLEST = 174.0, 150.0, 15.0, 150.0
-#: Room above the drawing for names of ends and holes, and below it for the axis, the bar and the legend, mm.
+#: Room above the drawing and below it, mm: for names of ends and short names of holes; for axis, bar and legend.
 ABOVE, BELOW = 13.0, 27.0
+#: Size of the names of holes, and gaps below and above them, points; height of the names of the ends above the drawing.
+NAME, GAP, ENDS = 5.6, 4.0, 20.0
+#: Millimetres in a point.
+POINT = 25.4 / 72
 GROUND = "#6b5a3e"
 #: Bands wider than the relief of all horizons are cut at so many times it.
 WIDEST_BAND = 0.6
@@ -108,8 +112,10 @@ def draw_section(
 
     length, low, high = sheet.length, sheet.low, sheet.high
     wide, tall = length * 1000 / sheet.scale, (high - low) * 1000 / sheet.scale * sheet.exaggeration
-    height = ABOVE + tall + BELOW
+    near = max(THICKNESS * length, 1.0)
     with drawing(7.5):
+        ends = max(ENDS, GAP + _longest_name(section, site, near) + GAP)
+        height = ABOVE + (ends - ENDS) * POINT + tall + BELOW
         figure = Figure(figsize=(SHEET * MM, height * MM), dpi=200)
         axes = figure.add_axes((LEFT / SHEET, BELOW / height, wide / SHEET, tall / height))
         axes.set_xlim(0, length)
@@ -119,11 +125,10 @@ def draw_section(
         for name, lines in cut.items():
             for line in lines:
                 _profile(axes, line, colours[name], ground)
-        near = max(THICKNESS * length, 1.0)
         kinds = _holes(axes, section, site, near, (low, high))
         for name, found in points.items():
             _contacts(axes, section, found, near, colours[name])
-        _frame(axes, section, length, t)
+        _frame(axes, section, length, ends, t)
         scale_bar(axes, sheet.scale, wide - 44.0, -13.5)
         _legend(figure, cut, colours, kinds, near, t, ground=ground is not None)
     return figure
@@ -193,14 +198,25 @@ def _holes(axes: Axes, section: Section, site: Site, near: float, limits: tuple[
             continue
         kinds.add(hole.kind)
         axes.plot(s, z, color=kind_style(hole.kind)[1], lw=0.9, zorder=3)
-        axes.plot(s[:1], z[:1], marker="v", ms=3.2, color=kind_style(hole.kind)[1], lw=0, zorder=6, clip_on=False)
+        if z[0] <= high:
+            axes.plot(s[:1], z[:1], marker="v", ms=3.2, color=kind_style(hole.kind)[1], lw=0, zorder=6, clip_on=False)
         if all(abs(s[0] - other) > 0.028 * length for other in named):
             named.append(float(s[0]))
             axes.annotate(
-                hole.name, (s[0], min(max(z[0], low), high)), xytext=(0, 4), textcoords="offset points", rotation=90,
-                size=5.6, color=TEXT, ha="center", va="bottom", zorder=7, annotation_clip=False,
+                hole.name, (s[0], min(max(z[0], low), high)), xytext=(0, GAP), textcoords="offset points", rotation=90,
+                size=NAME, color=TEXT, ha="center", va="bottom", zorder=7, annotation_clip=False,
             )  # fmt: skip
     return kinds
+
+
+def _longest_name(section: Section, site: Site, near: float) -> float:
+    """Return the length of the longest name of a hole near the section, in points."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import TextPath
+
+    names = {hole.name for hole in site.holes if along_polyline(section.line, hole.xyz[:1, :2])[1][0] <= near}
+    font = FontProperties()
+    return max((float(TextPath((0, 0), name, size=NAME, prop=font).get_extents().x1) for name in names), default=0.0)
 
 
 def _contacts(axes: Axes, section: Section, points: PointSet, near: float, colour: str) -> None:
@@ -209,8 +225,8 @@ def _contacts(axes: Axes, section: Section, points: PointSet, near: float, colou
     axes.plot(s[of], points.xyz[of, 2], "o", ms=2.6, mfc=PAPER, mec=colour, mew=0.8, zorder=6)
 
 
-def _frame(axes: Axes, section: Section, length: float, t: Language) -> None:
-    """Draw the axes, and name both ends with the direction in which the section runs."""
+def _frame(axes: Axes, section: Section, length: float, above: float, t: Language) -> None:
+    """Draw the axes, and name both ends, ``above`` points above, with the direction in which the section runs."""
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
     axes.xaxis.set_major_locator(MaxNLocator(8, steps=[1, 2, 5, 10]))
@@ -231,7 +247,7 @@ def _frame(axes: Axes, section: Section, length: float, t: Language) -> None:
     top = axes.get_ylim()[1]
     for x, name, bearing, ha in ends:
         axes.annotate(
-            f"{name}  {bearing:03.0f}°", (x, top), xytext=(0, 20), textcoords="offset points", size=8, weight="bold",
+            f"{name}  {bearing:03.0f}°", (x, top), xytext=(0, above), textcoords="offset points", size=8, weight="bold",
             color=TEXT, ha=ha, va="bottom", annotation_clip=False,
         )  # fmt: skip
 

@@ -41,6 +41,8 @@ from geofit.report.result import HorizonResult
 __all__ = ["ReportDialog"]
 
 _FOLDER = "folder"
+#: Width of the names of the horizons to be examined, letters.
+_NAMES = 36
 
 
 class ReportDialog(TaskDialog):
@@ -88,14 +90,14 @@ class ReportDialog(TaskDialog):
         self.folder = QLineEdit(str((folder or Path(str(QSettings().value(_FOLDER, "")) or Path.home())) / "report"))
         self.folder.textChanged.connect(self.refresh)
         self.examine = QCheckBox()
-        self.examine.setToolTip(self.tr("The prediction error away from the data, found by leaving out holes."))
         self.examine.setChecked(True)
         self.go.setText(self.tr("&Write"))
         self.view = QPushButton(self.tr("&Open"))
         self._lay_out(site)
         self.go.clicked.connect(self._write)
         self.view.clicked.connect(self.open_result)
-        horizons, bodies = {result.name: result for result in self._results}, self._bodies
+        horizons = {result.name: result for result in self._results}
+        bodies = {name: body for name, body in self._bodies.items() if body.fitted is not None}
         words = self.tr("Horizons: {names}").format(names=self._titles(horizons))
         if bodies:
             words += " · " + self.tr("Bodies: {names}").format(names=self._titles(bodies))
@@ -147,7 +149,13 @@ class ReportDialog(TaskDialog):
     def _ask_to_examine(self) -> None:
         """Offer to examine the horizons of which nothing is known away from their data."""
         unknown = [result.name for result in self._results if result.prediction is None]
-        self.examine.setText(self.tr("&Examine first: {names}").format(names=literal(", ".join(unknown))))
+        # The names of many horizons would make the dialog wider than the screen; the tip has them all.
+        metrics = self.fontMetrics()
+        width = _NAMES * metrics.averageCharWidth()
+        names = metrics.elidedText(", ".join(unknown), Qt.TextElideMode.ElideRight, width)
+        self.examine.setText(self.tr("&Examine first: {names}").format(names=literal(names)))
+        tip = self.tr("The prediction error away from the data, found by leaving out holes.")
+        self.examine.setToolTip("\n".join([tip, *unknown]))
         self._form.setRowVisible(self.examine, bool(unknown))
 
     def _browse(self) -> None:

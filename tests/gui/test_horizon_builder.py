@@ -63,6 +63,7 @@ def test_codes_are_grouped_the_picks_shown_and_the_horizon_added(opened, monkeyp
     opened.idle()
     assert not any(layer.horizon == "Preview" for layer in layers)
     assert "overburden" in document.horizons
+    assert not opened.window.panels.changes.isVisible(), "a new horizon has not moved"
     assert len(document.site.horizons["overburden"]) == seen[1]
     assert set(before.order) < set(document.horizons)
     opened.window.fitting.fit("overburden")

@@ -95,6 +95,10 @@ def test_opening_fitting_and_failing(app, small):
     app.trigger("fit_all")
     app.idle()
     assert set(app.document.surfaces()) == {"up", "low"}
+    app.window.statusBar().clearMessage()
+    app.window.fitting.fit("up")
+    app.idle()
+    assert "up is up to date" in app.window.statusBar().currentMessage(), "nothing to fit, and that is stated"
     app.trigger("check_order")
     app.idle()
     assert "cross" in app.window.statusBar().currentMessage()

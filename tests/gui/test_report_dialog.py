@@ -8,7 +8,7 @@ import pytest
 from panel_samples import FAULT, fitted, sample_site
 from PySide6.QtCore import QDate, Qt
 from PySide6.QtGui import QDesktopServices
-from PySide6.QtWidgets import QMessageBox
+from PySide6.QtWidgets import QLabel, QMessageBox
 
 from geofit.gui.dialogs.report import ReportDialog
 from geofit.report.result import HorizonResult
@@ -73,6 +73,20 @@ def test_of_a_surface_with_nothing_behind_it_nothing_is_handed_back(qtbot, tmp_p
     assert opened_files == [str(tmp_path / "report.json")]
     assert examined == []
     assert dialog.examine.isVisible()
+
+
+def test_the_names_of_many_horizons_neither_widen_the_dialog_nor_cut_its_labels(qtbot):
+    site, surface = sample_site(), fitted(FAULT)
+    names = [f"Base of the weathered granodiorite & cover {k}" for k in range(25)]
+    dialog = ReportDialog(site, [HorizonResult(surface.with_(name=name), site) for name in names])
+    qtbot.addWidget(dialog)
+    dialog.show()
+    qtbot.waitExposed(dialog)
+    assert dialog.width() <= 700
+    labels = [label for label in dialog.findChildren(QLabel) if not label.wordWrap() and label.isVisible()]
+    assert all(label.width() >= label.sizeHint().width() for label in labels)
+    assert dialog.examine.width() >= dialog.examine.sizeHint().width()
+    assert names[-1] in dialog.examine.toolTip()
 
 
 def test_without_a_form_or_a_folder_nothing_can_be_written(qtbot):

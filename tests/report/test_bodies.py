@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from results import horizon
 
 import geofit
 from geofit.data.languages import EN, ZH, sentence
@@ -18,8 +19,10 @@ from geofit.project.body_run import run_body
 from geofit.project.pores_run import run_pores
 from geofit.project.single_reports import body_findings, write_body_report, write_pores_report
 from geofit.report import fonts
-from geofit.report.body_chapter import BodyFindings, body_chapter
+from geofit.report.body_chapter import BodyFindings, body_chapter, body_row
+from geofit.report.chapters import document
 from geofit.report.document import CheckMark, Facts, Heading, Paragraph, Picture, ReportTable
+from geofit.report.gather import accuracy_report
 from geofit.report.style import PASS
 
 NO_FONT = fonts.chinese_family() is None
@@ -136,6 +139,20 @@ def test_what_limits_the_use_of_a_body_is_a_warning_in_its_chapter(run, t):
     few = message("test.few", "Contacts: {count}", count=8).with_severity("warning")
     accuracy = replace(run.body.accuracy, notes=(message("test.active", "6 samples are active"), few))
     assert warnings(replace(bare, body=run.body.with_accuracy(accuracy))) == [sentence(few, t)]
+
+
+@pytest.mark.parametrize("t", [EN, ZH], ids=lambda t: t.code)
+def test_the_summary_of_a_site_states_the_verdict_of_its_bodies(run, t):
+    found = BodyFindings(run.body, run.volumes)
+    chapter = body_chapter(found, t)
+    report = accuracy_report([horizon()], date="2026-11-21")
+    summary = document(report, t, bodies=[chapter], body_rows=[body_row(found, t)]).chapters[1]
+    horizons, bodies = (block for block in summary.blocks[:3] if isinstance(block, ReportTable))
+    assert [len(table.columns) for table in (horizons, bodies)] == [len(bodies.rows[0])] * 2
+    (row,) = bodies.rows
+    assert row[:2] == ("ORE", chapter.verdict)
+    assert row[5] == str(run.accuracy.n)
+    assert row[6].word.removeprefix("! ") in chapter.blocks[0].text, "the checks that failed"
 
 
 @pytest.mark.parametrize("t", [EN, ZH], ids=lambda t: t.code)

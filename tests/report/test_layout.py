@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fpdf import FPDF
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from results import examined, horizon
 
 from geofit.data.languages import EN, ZH
@@ -290,6 +291,25 @@ def test_the_legend_of_a_section_names_the_kinds_of_holes_that_are_drawn():
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert "borehole" in words
     assert "adit" not in words
+
+
+def test_names_of_holes_at_the_ends_of_a_section_keep_clear_of_those_of_the_ends():
+    depth = np.array([0.0, 100.0])
+    tops = ((4.0, "REX-16-086"), (500.0, "B1"), (990.0, "CA37_5_PLUS_1A"))
+    holes = tuple(Hole(name, "borehole", depth, np.array([[x, 0, 1530.0], [x, 0, 1400.0]])) for x, name in tops)
+    section = Section("L", np.array([[0.0, 0.0], [1000.0, 0.0]]))
+    ground = Ground(np.array([0.0, 1000.0]), np.array([-10.0, 10.0]), np.array([[1300.0, 1500.0]] * 2))
+    site = Site("dam", {}, ground=ground, holes=holes)
+    figure = draw_section(section_sheet(section, site, {}, "L"), section, site, {}, {})
+    (axes,) = figure.axes
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    boxes = {text.get_text().split(" ")[0]: text.get_window_extent(renderer) for text in axes.texts}
+    ends = [boxes[name] for name in ("L", "L′")]
+    assert not any(boxes[name].overlaps(end) for _, name in tops for end in ends)
+    assert all(box.y1 <= figure.bbox.y1 for box in boxes.values()), "the names are on the sheet"
+    (top,) = {round(axes.transData.transform((0, high))[1]) for high in axes.get_ylim()[1:]}
+    collars = [line for line in axes.lines if line.get_marker() == "v"]
+    assert all(axes.transData.transform(line.get_xydata())[0, 1] <= top for line in collars), "no collar floats above"
 
 
 @pytest.fixture
