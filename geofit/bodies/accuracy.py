@@ -26,6 +26,9 @@ WORST = 20
 BURIED, FAR = 0.5, 0.25
 #: With fewer contacts P10 to P90 is too narrow: it contained the volume of a third of the planted ellipsoids, not 80 %.
 FEW = 9
+#: Share of the extent of a body in a direction, beyond all data there, above which its volume is an assumption; nodes
+#: of the raster on which the section through the data is measured, along each side.
+BEYOND, RASTER = 0.5, 120
 #: Sides of the box, and how a sentence calls them.
 SIDE_WORDS = {
     "west": message("bodies.side-west", "west"),
@@ -288,5 +291,45 @@ def _notes(body: BodyFit) -> tuple[Message, ...]:
                 needed=FEW,
             ).with_severity("warning")
         )
+    notes += _beyond(body)
     notes += [issue.text for issue in body.issues]
     return tuple(notes)
+
+
+def _beyond(body: BodyFit) -> list[Message]:
+    """Return a warning where most of the extent in a direction lies beyond all data, as across a fence of holes."""
+    surface = body.fitted.survey.places
+    if not len(surface):
+        return []
+    data = np.concatenate([body.data.contacts, body.data.inside, body.data.outside]) - body.origin
+    middle = data.mean(axis=0)
+    axes = np.linalg.svd(data - middle, full_matrices=False)[2]
+    known, reached = ((xyz - middle) @ axes.T for xyz in (data, surface))
+    low, high = reached.min(axis=0), reached.max(axis=0)
+    covered = np.maximum(np.minimum(high, known.max(axis=0)) - np.maximum(low, known.min(axis=0)), 0.0)
+    k = int(np.argmin(covered / (high - low)))
+    if covered[k] >= (1 - BEYOND) * (high - low)[k]:
+        return []
+    across = np.delete(axes, k, axis=0)
+    first, last = np.delete(low, k), np.delete(high, k)
+    steps = (np.arange(RASTER) + 0.5) / RASTER
+    u, v = np.meshgrid(*(first + steps[:, None] * (last - first)).T)
+    section = body.field.value(middle + np.column_stack([u.ravel(), v.ravel()]) @ across) < 0
+    # An axis has no sign: it is stated downwards, a level one from north over east to south.
+    level = abs(axes[k, 2]) < 0.01
+    way = -axes[k] if (axes[k, 0] < 0 if level else axes[k, 2] > 0) else axes[k]
+    return [
+        message(
+            "bodies.extent-beyond-data",
+            "Along azimuth {azimuth}° and dip {dip}° the body extends over {extent:.1f} m, but the data cover "
+            "only {covered:.1f} m of it. No data bound the rest (reach: {reach:.1f} m), so the volume and P10 to P90 "
+            "are assumptions. The section through the middle of the data has {area:.0f} m²: each metre of extent adds "
+            "about {area:.0f} m³. Give data on both sides, or limit the body by its reach or its box.",
+            azimuth=round(float(np.degrees(np.arctan2(way[0], way[1])))) % 360,
+            dip=round(float(np.degrees(np.arcsin(np.clip(-way[2], 0.0, 1.0))))),
+            extent=float((high - low)[k]),
+            covered=float(covered[k]),
+            reach=body.region.reach,
+            area=float(section.mean() * np.prod(last - first)),
+        ).with_severity("warning")
+    ]

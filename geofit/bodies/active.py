@@ -241,9 +241,14 @@ def _exchange(points: Floats, values: Floats, oriented: Floats, normals: Floats,
             # Too few conditions would be left to fix the trend: only the worst one goes.
             wrong &= (pull == pull.min(initial=0.0)) & (len(points) + len(active) > 6)
         enter = _worst(rbf.value, samples, active, len(points), rounds)
+        kept = np.union1d(active[~wrong], enter)
+        if wrong.any() and not fixes_trend(np.vstack([points, samples.xyz[kept]]), oriented):
+            # Those of a fence of holes are all on one plane: without the others the trend across it would be free.
+            wrong[:] = False
+            kept = np.union1d(active, enter)
         if not len(enter) and not wrong.any():
             return ActiveFit(rbf, system, active, rounds)
-        active = np.union1d(active[~wrong], enter)
+        active = kept
     raise _unsatisfied(len(enter), ROUNDS)
 
 

@@ -44,9 +44,27 @@ def write_solid(body: ImplicitBody, path: str | PathLike[str], **stated: Unpack[
     try:
         if sharp_union(body.field) is not None:
             return write_body(body, path, shape=creased_solid(body), **stated)
-        return write_body(body, path, patched_surface(body).components, **stated)
+        found = write_body(body, path, patched_surface(body).components, **stated)
+        if not _lost(body, found):
+            return found
+        # Where two parts touch, a neck or gap may be thinner than the raster of the patches.
+        reason = message(
+            "bodies.contacts-off-patches",
+            "The contacts lie up to {off:.3g} m from the patches: a neck or a gap there is thinner than the patches, "
+            "and only triangles follow it.",
+            off=found.max_abs,
+        )
+        return write_body(body, path, reason=str(reason), **stated)
     except (FitError, StitchError) as error:
         return write_body(body, path, reason=str(error), **stated)
+
+
+def _lost(body: ImplicitBody, found: SolidReadBack) -> bool:
+    """Return whether contacts miss epsilon on the patches of a file although they meet it on the body."""
+    if not found.sigma >= body.epsilon:
+        return False
+    own = body.distance(body.contacts)
+    return float(np.sqrt((own**2).sum() / max(len(own) - 1, 1))) < body.epsilon
 
 
 def creased_solid(body: ImplicitBody) -> Any:

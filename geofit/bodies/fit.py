@@ -160,6 +160,7 @@ def fit_field(data: BodyData, settings: BodySettings) -> Fitted:
         fit.rounds,
         time.perf_counter() - start,
         unsupported,
+        fit_field,
         buried,
     )
 

@@ -230,6 +230,19 @@ def test_sharp_bodies_keep_their_creases(name: str, tmp_path: Path) -> None:
     assert np.abs(body.field.value(mesh.vertices)).max() <= body.epsilon / 2
 
 
+def test_parts_that_touch_along_an_edge_are_triangles(tmp_path: Path) -> None:
+    """The patches went past a neck of a few centimetres, 7 m from its contacts, and the file failed."""
+
+    def truth(x: np.ndarray) -> np.ndarray:
+        return np.minimum(*(np.abs(x - side * np.array([0.3, 0, 0.3])).max(axis=1) - 0.3 for side in (-1, 1)))
+
+    body = fit_body(drilled(truth, 1, rows=9, named=True))
+    found = body.write_step(tmp_path / "body.step")
+    assert found.passed, [check.text for check in found.checks if check.passed is False]
+    assert found.grade == "triangles"
+    assert "contacts" in str(next(check.text for check in found.checks if check.name == "grade"))
+
+
 def cube(low: float, high: float, *, outward: bool) -> list[Patch]:
     """Return the faces of a cube as patches of degree 1."""
     faces, knots = [], np.array([0.0, 0.0, 1.0, 1.0])

@@ -62,6 +62,41 @@ def test_the_hole_opens_once_and_when_it_has_to(mode: str, opens: float, share: 
     assert abs(event.tau - opens) <= share * opens
 
 
+BIG, TWINS = (
+    implicit.Sphere([0, 0, 0], 0.8),
+    implicit.union(implicit.Sphere([-0.7, 0, 0], 0.45), implicit.Sphere([0.7, 0, 0], 0.45)),
+)
+#: The linear blend splits where it is 0 at the middle; the arrival when the neck's radius has run from 0.8 to 0.
+BLEND_SPLIT = 0.8 / (0.8 + 0.7 - 0.45)
+NECK = np.linspace(0, 0.8, 4001)
+ARRIVAL_SPLIT = 1 - np.exp(-np.trapezoid(1 / (np.hypot(0.7, NECK) - 0.45), NECK))
+
+
+@pytest.mark.parametrize(
+    ("mode", "first", "last", "at", "components", "euler"),
+    [
+        ("blend", BIG, TWINS, BLEND_SPLIT, (1, 2), (2, 4)),
+        ("blend", TWINS, BIG, 1 - BLEND_SPLIT, (2, 1), (4, 2)),
+        ("arrival", BIG, TWINS, ARRIVAL_SPLIT, (1, 2), (2, 4)),
+        ("blend", BIG, implicit.difference(implicit.Sphere([0, 0, 0], 0.9), implicit.Sphere([0, 0, 0], 0.4)),
+         0.8 / (0.8 + 0.4), (1, 1), (2, 4)),
+    ],
+    ids=["split", "merge", "split of an arrival", "cavity"],
+)  # fmt: skip
+def test_parts_split_merge_and_get_a_cavity_when_they_have_to(
+    mode: str,
+    first: implicit.Field,
+    last: implicit.Field,
+    at: float,
+    components: tuple[int, int],
+    euler: tuple[int, int],
+) -> None:
+    (event,) = geofit.morph(first, last, mode=mode, cells=64, pace="time").events
+    assert event.components == components
+    assert event.euler == euler
+    assert abs(event.tau - at) <= 0.02
+
+
 def test_no_islands_appear_where_both_surfaces_meet() -> None:
     m = geofit.morph(BALL, RING, cells=48, pace="time")
     for tau, lines in ((0.02, 1), (0.3, 1), (0.6, 1), (0.8, 2), (0.95, 2)):
