@@ -10,7 +10,7 @@ from pathlib import Path
 
 __all__ = ["PAGES", "PLACE_OF_DIALOG", "PLACE_OF_PANEL", "TUTORIAL", "anchor"]
 
-#: The pages in a checkout; an installed package has the short form of the tutorial in :mod:`geofit.gui.help`.
+#: In a checkout next to ``gui``; in an installed package too, as ``geofit/docs``.
 PAGES = Path(__file__).resolve().parents[1] / "docs"
 TUTORIAL = "tutorial.md"
 #: By the names of the docks; ``view`` is the 3D view, ``start`` the page before a site is open.

@@ -20,6 +20,7 @@ from geofit.io.axes import Region, check_axes, check_elevations
 from geofit.io.collar_heights import check_heights
 from geofit.io.columns import COLLAR, COLLAR_ON_GROUND, INTERVALS, plain_name
 from geofit.io.desurvey import Desurvey, WellPath, desurvey
+from geofit.io.digits import check_digits
 from geofit.io.journal import Journal
 from geofit.io.lower_limits import tops_from_above
 from geofit.io.not_reached import open_bases, set_marks_aside
@@ -202,6 +203,7 @@ def _read_collars(
         )
     check_axes(rows, x, y, region)
     check_elevations(rows, z)
+    check_digits(rows, x, y, z)
     check_heights(rows, x, y, z, ground)
     first: dict[str, int] = {}
     alike: dict[tuple[str, ...], int] = {}

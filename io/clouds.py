@@ -16,6 +16,7 @@ from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.data.site import ImportIssue
 from geofit.io.columns import PICKS, Schema, plain_name
+from geofit.io.digits import LEAST, lost_by_rounding
 from geofit.io.extra import need
 from geofit.io.journal import MOST, Journal
 from geofit.io.rows import Rows, read_rows
@@ -246,6 +247,8 @@ def _parquet(cloud: Cloud) -> Iterator[Floats]:
         chosen.append(str(found))
     cloud.read = cloud.used = 0
     metres = _marked_metres(cloud, chosen)
+    single = np.array([str(file.schema_arrow.field(name).type) == "float" for name in chosen[:2]])
+    largest = np.zeros(2)
     try:
         for batch in file.iter_batches(CHUNK, columns=chosen):
             xyz = (
@@ -253,10 +256,16 @@ def _parquet(cloud: Cloud) -> Iterator[Floats]:
                 * metres
             )
             finite = np.isfinite(xyz).all(axis=1)
+            largest = np.maximum(largest, np.abs(xyz[finite, :2]).max(axis=0, initial=0.0))
             cloud.read, cloud.used = cloud.read + len(xyz), cloud.used + int(finite.sum())
             yield xyz if finite.all() else xyz[finite]
     except (OSError, ValueError, TypeError):
         raise _damaged(cloud.path) from None
+    step = float(np.where(single, np.spacing((largest / metres[:2]).astype(np.float32)) * metres[:2], 0.0).max())
+    if step > 2 * LEAST:
+        journal = Journal(list(cloud.issues))
+        journal.add("warning", cloud.path.name, *lost_by_rounding(step))
+        cloud.issues[:] = journal.issues
 
 
 @dataclass(frozen=True, kw_only=True)

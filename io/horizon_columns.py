@@ -10,6 +10,7 @@ from geofit.data.messages import Untranslated, message
 from geofit.data.points import PointSet
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import HORIZON_COLUMNS
+from geofit.io.digits import check_digits
 from geofit.io.guess import locate
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
@@ -56,6 +57,7 @@ def load_horizon_columns(
         )
     (x, y), mouth = rows.places(), rows.numbers("z", no_data=True) if depths else np.zeros(len(rows))
     check_axes(rows, x, y, region)
+    check_digits(rows, x, y)
     places = [locate(rows.table, "horizons", wanted) for wanted in source.horizons]
     _tell_measure(rows, places, depths)
     found: dict[str, Floats] = {}

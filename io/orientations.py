@@ -14,6 +14,7 @@ from geofit.data.site import ImportIssue, Orientations
 from geofit.geometry.attitudes import attitudes
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import ORIENTATIONS
+from geofit.io.digits import check_digits
 from geofit.io.journal import Journal
 from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source
@@ -69,6 +70,7 @@ def load_orientations(source: Source, journal: Journal, region: Region | None = 
     rows = read_rows(source, ORIENTATIONS, journal)
     (x, y), z = rows.places(), rows.numbers("z", no_data=True)
     check_axes(rows, x, y, region)
+    check_digits(rows, x, y)
     azimuth, dip = _attitudes(rows)
     horizon = rows.text("horizon", required=False)
     rows.close()

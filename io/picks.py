@@ -18,6 +18,7 @@ from geofit.data.progress import Progress, tell
 from geofit.data.site import ImportIssue, TableCount
 from geofit.io.axes import Region, check_axes, check_elevations
 from geofit.io.columns import PICKS, Schema
+from geofit.io.digits import check_digits
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping
@@ -151,6 +152,7 @@ def load_picks(
     names = horizons.labels(rows) if "horizon" in rows.columns else Labels.same(alone or "", len(rows))
     check_axes(rows, xyz[:, 0], xyz[:, 1], region)
     check_elevations(rows, xyz[:, 2])
+    check_digits(rows, *xyz.T)
     kinds = rows.labels("kind", required=False)
     rows.close()
     rows.require_any()

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.labels import Labels
+from geofit.data.legible import legible
 from geofit.data.messages import EMPTY, Message, Untranslated, message, plural_message
 from geofit.io.big_columns import BigColumn
 from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
@@ -37,6 +38,14 @@ _NO_NUMBER = frozenset({
     "-", "--", "–", "—", "/", "?", "n/a", "n.a.", "na", "nan", "n.d.", "nd", "nil", "none", "null", "unknown",
     "k.a.", "unbekannt", "s.o.", "无", "不详",
 })  # fmt: skip
+#: Days as workbooks store them, and as spreadsheets in English, German or Chinese write them into text.
+_DATE = re.compile(
+    r"\d{4}-\d\d-\d\d(?:[T ]\d\d:\d\d(?::\d\d)?)?|\d{1,2}([./])\d{1,2}\1(?:19|20)\d\d|(?:19|20)\d\d/\d{1,2}/\d{1,2}"
+    r"|\d{1,2}[-. ]{1,2}(?:jan|feb|mar|mär|mrz|apr|may|mai|jun|jul|aug|sept?|oct|okt|nov|dec|dez)\.?"
+    r"(?:[- ]?\d\d(?:\d\d)?)?"
+    r"|(?:\d{4}年)?\d{1,2}月\d{1,2}日",
+    re.IGNORECASE,
+)
 
 
 class Rows:
@@ -327,7 +336,30 @@ def read_rows(source: Source | str | Path, schema: Schema, journal: Journal) -> 
     table = read_any_table(source, journal, schema.name)
     if table.crs and not source.crs:
         source = replace(source, crs=table.crs)
-    return Rows(table, find_columns(table, schema, source, journal), source, journal)
+    rows = Rows(table, find_columns(table, schema, source, journal), source, journal)
+    for role in ("hole", "code", "horizon"):
+        _warn_of_dates(rows, role)
+    return rows
+
+
+def _warn_of_dates(rows: Rows, role: str) -> None:
+    """Warn of names that a spreadsheet turned into dates: such a hole or unit has lost its own name."""
+    cells = rows.table.columns[rows.columns[role]] if role in rows.columns else ()
+    if isinstance(cells, BigColumn):
+        return
+    dates = [i for i, cell in enumerate(cells) if cell[:1].isdigit() and _DATE.fullmatch(cell.strip())]
+    if dates:
+        names = dict.fromkeys(cells[i].strip() for i in dates)
+        reason = message(
+            "io.names-like-dates",
+            "Names of the {role} that are dates: {names}; rows: {count}. A spreadsheet turns a name such as 3-12 "
+            "into one",
+            role=role,
+            names=", ".join(list(names)[:10]),
+            count=len(dates),
+        )
+        remedy = message("io.format-names-as-text", "Format the column as text, write these names again, and save it.")
+        rows.warn(dates[0], role, reason, remedy)
 
 
 def name_key(name: str) -> tuple[str, ...]:
@@ -365,7 +397,7 @@ def is_blank(cell: str) -> bool:
 
 
 def _cleaned(cell: str) -> str:
-    return cell.strip() if cell.isascii() else unicodedata.normalize("NFKC", cell).strip()
+    return cell.strip() if cell.isascii() else unicodedata.normalize("NFKC", legible(cell)).strip()
 
 
 def _degrees(table: Table, columns: dict[str, int]) -> str | None:

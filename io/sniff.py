@@ -55,6 +55,11 @@ _SURE_POINT = r"(?![1-9]\d{0,2}\.\d{3}(?!\d))\d*\.\d+|[1-9]\d{0,2}(?:,\d{3}){2,}
 _MARKS = re.compile(rf"[+-]?(?:{_POINTED}|{_COMMAED}|[1-9]\d{{0,2}}([.,])\d{{3}}(?:\1\d{{3}})+)")
 #: Commas that separate cells, and cells in quotes, whose commas do not.
 _OUTSIDE_QUOTES = re.compile(r'("[^"\n]*")|,')
+#: Bytes of no ASCII; three of them that are one character of UTF-8; and two that are one, next to no others. Pairs of
+#: GB18030 make the former hardly ever and the latter now and then, Windows-1252 neither.
+_HIGH = re.compile(rb"[\x80-\xff]")
+_THREE = re.compile(rb"[\xe1-\xef][\x80-\xbf]{2}")
+_ALONE = re.compile(rb"(?<![\x80-\xff])(?:[\xc3-\xdf][\x80-\xbf])(?![\x80-\xff])|[\xe1-\xef][\x80-\xbf]{2}")
 #: Letters of a text in which they are looked for.
 HEAD = 65_536
 #: Titles have at most this share of the usual cells; a header lies at most so many rows below the first of them.
@@ -64,8 +69,9 @@ NARROW, TITLES = 0.6, 20
 def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, str]:
     """Return the text of a file and its encoding.
 
-    In order: what the caller says, a byte order mark, strict UTF-8, UTF-16 by its zero bytes, GB18030 where
-    the bytes look like Chinese, Windows-1251 where they look like Cyrillic, Windows-1252.
+    In order: what the caller says, a byte order mark, strict UTF-8, UTF-16 by its zero bytes, UTF-8 with lines in
+    another encoding or with damaged characters, GB18030 where the bytes look like Chinese, Windows-1251 where they
+    look like Cyrillic, Windows-1252. A character that is damaged becomes U+FFFD.
     """
     if encoding is not None:
         try:
@@ -104,7 +110,18 @@ def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, st
         try:
             return data.decode(codec), codec
         except UnicodeError:
-            continue
+            pass
+        if codec == "utf-8" and _mostly_utf8(data):
+            return _mixed(data)
+        if codec == "gb18030":
+            text = data.decode(codec, "replace")
+            if 100 * text.count("\ufffd") <= len(text) - sum(map(str.isascii, text)):
+                return text, codec
+        elif codec.startswith("utf-16"):
+            # A byte too many at the end is the line end of another program.
+            text = data[: len(data) // 2 * 2].decode(codec, "replace")
+            if 10 * text.count("\ufffd") <= len(text):
+                return text, codec
     raise InputError(
         message("io.not-text", "The file is not text in UTF-8, UTF-16, GB18030 or Windows-1252"),
         message("io.save-as-utf8", "Save it as CSV UTF-8, or state its encoding."),
@@ -143,6 +160,35 @@ def _looks_chinese(data: bytes) -> bool:
     high = re.findall(rb"[\x80-\xff]+", data)
     common = sum(len(re.findall(rb"[\xa1-\xa3\xb0-\xd7][\xa1-\xfe]", run)) for run in high if len(run) % 2 == 0)
     return common * 2 > 0.6 * sum(map(len, high)) > 0
+
+
+def _mostly_utf8(data: bytes) -> bool:
+    """Whether a tenth of the lines that are not ASCII are UTF-8 that no text in another encoding is by chance."""
+    lines = [line for line in data.split(b"\n") if not line.isascii()]
+    sure = _ALONE if not _looks_chinese(data) else _THREE
+    found = sum(bool(_decoded(line) and sure.search(line)) for line in lines)
+    return 10 * found >= len(lines)
+
+
+def _mixed(data: bytes) -> tuple[str, str]:
+    """Return a text whose lines are UTF-8 or, each, in another encoding, and the encodings."""
+    codecs = {"utf-8": True}
+    lines = []
+    for line in data.split(b"\n"):
+        text = _decoded(line)
+        if text is None and 2 * sum(map(len, _THREE.findall(line))) < len(_HIGH.findall(line)):
+            other = "gb18030" if _looks_chinese(line) else "cp1252"
+            text = _decoded(line, other)
+            codecs.update({} if text is None else {other: True})
+        lines.append(line.decode("utf-8", "replace") if text is None else text)
+    return "\n".join(lines), " + ".join(codecs)
+
+
+def _decoded(line: bytes, codec: str = "utf-8") -> str | None:
+    try:
+        return line.decode(codec)
+    except UnicodeError:
+        return None
 
 
 def _looks_cyrillic(data: bytes) -> bool:

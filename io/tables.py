@@ -92,6 +92,7 @@ def read_table(source: Source, journal: Journal) -> Table:
     data = journal.read(source)
     require_table(data, source.name)
     lines, encoding = _lines(data, source)
+    _warn_of_characters(lines, encoding, source.name, journal)
     start = _skip_comments(lines, source.name, journal)
     sample = [line for line in lines[start : start + 4 * _SAMPLE] if line.strip()][:_SAMPLE]
     if not sample:
@@ -168,6 +169,37 @@ def _lines(data: bytes, source: Source) -> tuple[Sequence[str], str]:
         return big_text(data, source.name, source.encoding)
     text, encoding = decode(data, source.name, source.encoding)
     return text.replace("\r\n", "\n").replace("\r", "\n").replace("\0", "").split("\n"), encoding
+
+
+def _warn_of_characters(lines: Sequence[str], encoding: str, name: str, journal: Journal) -> None:
+    """Warn of lines in different encodings, and of characters that are lost: names may no longer agree."""
+    if "+" in encoding:
+        journal.add(
+            "warning",
+            name,
+            message(
+                "io.encodings-mixed",
+                "Lines of the file are written in different encodings ({encodings}); each is read in its own",
+                encodings=encoding,
+            ),
+            message("io.check-names", "Check the names, or save the file as CSV UTF-8."),
+        )
+    if isinstance(lines, BigText) and "\ufffd".encode() not in lines.data:
+        return
+    lost = [i for i, line in enumerate(lines, 1) if "\ufffd" in line]
+    if lost:
+        journal.add(
+            "warning",
+            name,
+            message(
+                "io.characters-lost",
+                "Lines with damaged characters, read as \ufffd: {count}; names there may differ from those elsewhere",
+                count=len(lost),
+            ),
+            message("io.correct-names-or-export", "Correct the names there, or export the file again."),
+            row=lost[0],
+            value=lines[lost[0] - 1][:120],
+        )
 
 
 def _skip_comments(lines: Sequence[str], name: str, journal: Journal) -> int:

@@ -20,6 +20,8 @@ __all__ = ["RING", "layer_names", "read_features"]
 
 #: Header of the column with the running number of the line or ring that a vertex belongs to.
 RING = "ring"
+#: The system of GeoJSON that states none, as GDAL names it: with elevations it is another one.
+_OF_GEOJSON = (WGS84, "EPSG:4979")
 #: How a shapefile, a GeoPackage and GeoJSON begin.
 _BEGINNINGS = (b"\x00\x00\x27\x0a", b"SQLite format 3\x00", b"{")
 
@@ -75,7 +77,7 @@ def read_features(source: Source, journal: Journal) -> Table:
     except (OSError, ValueError, RuntimeError, UnicodeError):
         raise _damaged(source) from None
     crs = str(meta.get("crs") or "")
-    if crs == WGS84 and data.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{") and not _may_be_degrees(shapes):
+    if crs in _OF_GEOJSON and data.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{") and not _may_be_degrees(shapes):
         crs = ""
         journal.add(
             "note",

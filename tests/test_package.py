@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tomllib
+from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
@@ -285,6 +286,25 @@ def test_hashes_are_those_of_the_constraints():
     assert "--require-hashes --requirement $(HASHES)" in makefile
     for target in ("test", "lint", "docs", "package", "wheel"):
         assert f"\n{target}: .venv/.installed-all\n" in makefile
+
+
+def test_the_wheel_has_the_pages_of_the_help_with_their_pictures():
+    """An installed package opened a box of six lines for F1: the pages were in a checkout only."""
+    own = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]
+    # gui/help_places.py has docs/ next to gui/, in a checkout as in the package.
+    assert "geofit.docs" in own["packages"]
+    assert own["package-dir"]["geofit.docs"] == "docs"
+    pages = sorted((ROOT / "docs").glob("*.md"))
+    linked = {link for page in pages for link in re.findall(r"\]\((?!http)([^)#]+)", page.read_text(encoding="utf-8"))}
+    kept = {path.name for path in pages}
+    rules = [line.split() for line in (ROOT / "MANIFEST.in").read_text(encoding="utf-8").splitlines()]
+    for link in linked:
+        # Of the rules of the sdist the last one that applies counts.
+        verbs = [verb for verb, *names in rules if any(f"docs/{link}/".startswith(f"{name}/") for name in names)]
+        if verbs[-1:] != ["prune"] and any(fnmatch(link, form) for form in own["package-data"]["geofit.docs"]):
+            kept.add(link)
+    assert len(linked) > 20
+    assert linked <= kept
 
 
 def test_the_trial_of_the_wheel_finds_what_is_missing():

@@ -29,6 +29,10 @@ DATA = (
     "geofit/report/templates/report.html.j2",
     "geofit/report/templates/report.css",
     "gui/icons/geofit.svg",
+    "docs/tutorial.md",
+    "docs/images/morph_modes.png",
+    "docs/screenshots/en-light-1x/01_start.png",
+    "docs/screenshots/zh-dark-1x/09_section.png",
 )
 #: And those of the sdist alone.
 SOURCES = (
@@ -36,8 +40,8 @@ SOURCES = (
     "sample_data/collar.csv", "geofit/locale/zh_CN/LC_MESSAGES/geofit.po", "constraints/hashes.txt",
     "tests/conftest.py",
 )  # fmt: skip
-TRIAL = """
-import importlib, pkgutil, sys
+TRIAL = r"""
+import importlib, pkgutil, re, sys
 from pathlib import Path
 import geofit, geofit.io, geofit.gui.app, geofit.gui.main_window
 from geofit.data.languages import ZH, translate
@@ -51,7 +55,13 @@ try:
     geofit.io.read_site("none.toml")
 except InputError as error:
     assert translate(error.message, ZH) != str(error), "there is no Chinese"
-print("imports and translations work")
+from geofit.gui.help_places import PAGES, PLACE_OF_DIALOG, PLACE_OF_PANEL, TUTORIAL
+for place in {TUTORIAL, *PLACE_OF_PANEL.values(), *PLACE_OF_DIALOG.values()}:
+    page = PAGES / place.partition("#")[0]
+    links = re.findall(r"\]\((?!http)([^)#]+)", page.read_text(encoding="utf-8"))
+    lost = [link for link in links if not (PAGES / link).is_file()]
+    assert PAGES.is_relative_to(sys.prefix) and not lost, (page, lost)
+print("imports, translations and pages of the help work")
 """
 
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.data.legible import legible
+
 __all__ = ["Labels"]
 
 
@@ -40,12 +42,13 @@ class Labels:
         plain = isinstance(words, (list, tuple)) and all(isinstance(word, str) for word in words)
         texts: Sequence[str] = words if plain else np.asarray(words, dtype=np.str_).tolist()  # type: ignore[assignment]
         codes = np.fromiter((table.setdefault(word, len(table)) for word in texts), np.int32, len(texts))
-        return cls(codes, tuple(table))
+        # Halves of characters, from names in a broken encoding, could be written into no file.
+        return cls(codes, tuple(table)).renamed([legible(word) for word in table])
 
     @classmethod
     def same(cls, word: str, n: int) -> Labels:
         """Return one word for all of n points: its code is held once."""
-        return cls(np.broadcast_to(np.int32(0), (n,)), (word,))
+        return cls(np.broadcast_to(np.int32(0), (n,)), (legible(word),))
 
     def __post_init__(self) -> None:
         self.codes.setflags(write=False)

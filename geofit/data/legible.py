@@ -1,4 +1,4 @@
-"""Names of files as text: on Linux their bytes need not be UTF-8."""
+"""Names as text that can be written: on Linux the bytes of a file's name need not be UTF-8."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ def legible(name: str) -> str:
     >>> legible("picks.csv"), legible(os.fsdecode("钻孔".encode("gbk")))
     ('picks.csv', '钻孔')
     """
+    if name.isascii():
+        return name
     try:
         name.encode()
     except UnicodeEncodeError:

@@ -12,6 +12,7 @@ from geofit.checks.outside import BEYOND, continued
 from geofit.checks.shape import RANGE_SHARE
 from geofit.data.accuracy import Accuracy, Check
 from geofit.data.given import SURFACES, arguments_checked, require_kind
+from geofit.data.legible import legible
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
@@ -57,7 +58,7 @@ def judge(
     surface" gives sigma of the other points, which is the same in a fit and in its files.
     """
     require_kind("surface", surface, (PatchSurface, MeshSurface, HorizonFit), SURFACES)
-    judged = HorizonFit(surface, points, settings or FitSettings(), name or surface.name)
+    judged = HorizonFit(surface, points, settings or FitSettings(), legible(name or surface.name))
     found = surface.project(points.xyz)
     if found.beyond is None:
         found = replace(found, beyond=beyond_edge(surface.patches, points.xyz - surface.origin, found))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.given import arguments_checked
+from geofit.data.legible import legible
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress
 from geofit.data.settings import FitSettings
@@ -84,7 +85,7 @@ def fit_horizon(
     stage = Stages(progress)
     # The banded systems are small: more threads cost more than they give, and change the last digits.
     with one_thread():
-        problem, sketched = with_noise_of_sources(posed(points, settings, corners, stage, name, orientations))
+        problem, sketched = with_noise_of_sources(posed(points, settings, corners, stage, legible(name), orientations))
         model = solve(problem, stage, sketched)
         stage("check", 0.8)
         surface = fit_of(model)
