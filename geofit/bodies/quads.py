@@ -166,7 +166,7 @@ def fit_part(
     size, volume = float(np.ptp(component.vertices, axis=0).max()), abs(component.volume)
     which = message(
         "bodies.part-of-body",
-        "part {number} of {parts} ({size:.0f} m long, {volume:.3g} m3)",
+        "part {number} of {parts} ({size:.0f} m long, {volume:.3g} m³)",
         number=part.number,
         parts=part.parts,
         size=size,

@@ -9,6 +9,7 @@ Templates are literals, so that Babel can extract them: ``pybabel extract -k mes
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -218,12 +219,19 @@ class _Formatter(Formatter):
         try:
             if format_spec == "whole":
                 return in_groups(str(super().format_field(value, ".0f")))
-            return str(super().format_field(value, format_spec))
+            text = str(super().format_field(value, format_spec))
+            # A few significant digits of a large number need no power of ten: "260 m", not "2.6e+02 m".
+            if format_spec != "g" and format_spec.endswith("g") and _POWER.fullmatch(text):
+                sign, size = ("−", text[1:]) if value < 0 else ("", text)
+                return in_groups(f"{sign}{float(size):.0f}")
+            return text
         except (OverflowError, TypeError, ValueError):
             return folded(repr(value))
 
 
-_OWN_FORMATS = (":length}", ":whole}")
+#: What ".2g" makes of a number with up to nine digits before the point.
+_POWER = re.compile(r"[-−]?\d(?:\.\d+)?e\+0[1-8]")
+_OWN_FORMATS = (":length}", ":whole}", "g}")
 _FORMATTER = _Formatter()
 
 

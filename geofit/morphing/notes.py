@@ -42,8 +42,8 @@ def notes(morph: Morph) -> tuple[Message, ...]:
             found.append(
                 message(
                     "morphing.volumes-disagree",
-                    "From '{first}' to '{last}', gain less loss is {net:.6g} m3 on a lattice of {spacing:.3g} m, but "
-                    "the volumes differ by {wanted:.6g} m3. Use a smaller spacing; if this remains, parts of a mesh "
+                    "From '{first}' to '{last}', gain less loss is {net:.6g} m³ on a lattice of {spacing:.3g} m, but "
+                    "the volumes differ by {wanted:.6g} m³. Use a smaller spacing; if this remains, parts of a mesh "
                     "overlap or are inside out: repair it.",
                     first=first.name,
                     last=last.name,

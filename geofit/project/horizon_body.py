@@ -66,7 +66,7 @@ def _above(whole: TriangleMesh, mesh: TriangleMesh) -> tuple[Message, ...]:
         return ()
     text = message(
         "project.body-ends-at-ground",
-        "The body ends at the ground: {volume:whole} m3 between its horizons lie above it and are left out.",
+        "The body ends at the ground: {volume:whole} m³ between its horizons lie above it and are left out.",
         volume=above,
     )
     return (text,)

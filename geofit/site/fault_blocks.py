@@ -258,7 +258,7 @@ def _by_piece(
     notes = [
         message(
             "site.piece-without-surface",
-            "{area:whole} m2 of the study area of {horizon} lie apart from the rest of their block and have no "
+            "{area:whole} m² of the study area of {horizon} lie apart from the rest of their block and have no "
             "surface: points there: {count}, needed: {least}",
             area=piece.area,
             horizon=name,

@@ -74,7 +74,7 @@ class Order:
         if self.without:
             figures["seen"] = message(
                 "site.layer-area-by-holes",
-                " (at least {low:whole}, at most {high:whole} m2: {count} holes lack it, and {volume:whole} m3 lie "
+                " (at least {low:whole}, at most {high:whole} m²: {count} holes lack it, and {volume:whole} m³ lie "
                 "between such holes alone)",
                 low=self.at_least,
                 high=self.at_most,
@@ -84,19 +84,19 @@ class Order:
         if self.disputed > DISPUTED * self.volume:
             figures["disputed"] = message(
                 "site.layer-disputed",
-                "; {volume:whole} m3 of it lie above or below another horizon of the order, which crosses them",
+                "; {volume:whole} m³ of it lie above or below another horizon of the order, which crosses them",
                 volume=self.disputed,
             )
         if self.grounded:
             return message(
                 "site.layer-below-ground",
-                "; between them, below the ground, {volume:whole} m3 over {present:whole} m2{seen} where it is thicker "
+                "; between them, below the ground, {volume:whole} m³ over {present:whole} m²{seen} where it is thicker "
                 "than {least:g} m{disputed}",
                 **figures,
             )
         return message(
             "site.layer-between",
-            "; between them {volume:whole} m3 over {present:whole} m2{seen} where it is thicker than {least:g} m"
+            "; between them {volume:whole} m³ over {present:whole} m²{seen} where it is thicker than {least:g} m"
             "{disputed}",
             **figures,
         )
@@ -143,14 +143,14 @@ class Order:
         if not below:
             text = message(
                 "site.horizons-cross-above-ground",
-                "{upper} lies below {lower} above the ground only (places: {count}): {area:whole} m2, {volume:whole} m3"
+                "{upper} lies below {lower} above the ground only (places: {count}): {area:whole} m², {volume:whole} m³"
                 "{layer}",
                 **figures,
             )
             return Check("order", True, 0.0, 0.0, "m", text)
         text = message(
             "site.horizons-cross",
-            "{upper} lies below {lower} (places: {count}): {area:whole} m2, {volume:whole} m3, deepest {depth:.2f} m "
+            "{upper} lies below {lower} (places: {count}): {area:whole} m², {volume:whole} m³, deepest {depth:.2f} m "
             "at ({x:.1f}, {y:.1f}){layer}",
             **figures,
         )

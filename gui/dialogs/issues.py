@@ -94,7 +94,12 @@ class _Issues(QAbstractTableModel):
             )
             for i in issues
         ]
-        self._keys = [(rank[i.severity], i.file, i.row, i.column, i.value, i.reason, i.remedy) for i in issues]
+        # What concerns a whole file comes first: rows that were not used may be many, and would hide it.
+        first = [rank[i.severity] - (0 if i.row or i.severity == "note" else len(rank)) for i in issues]
+        self._keys = [
+            (place, i.file, i.row, i.column, i.value, i.reason, i.remedy)
+            for place, i in zip(first, issues, strict=True)
+        ]
         self._heads = (
             self.tr("State"), self.tr("File"), self.tr("Row"), self.tr("Column"), self.tr("Value"), self.tr("Reason"),
             self.tr("What to do"),

@@ -27,6 +27,11 @@ def test_areas_and_volumes_have_whole_numbers_in_groups():
     assert text.replace("\u202f", " ").replace("\xa0", " ").replace("\u2009", " ") == "178 160 401 m3, 10 m2, −15 000"
 
 
+def test_few_digits_of_a_large_number_are_written_out():
+    found = message("test.few", "{a:.2g} m, {b:.3g} m, {c:.2g} m, {d:.2g}", a=262.4, b=-98_765.0, c=41.7, d=4.2e11)
+    assert str(found).split() == ["260", "m,", "−98", "800", "m,", "42", "m,", "4.2e+11"]
+
+
 def test_formatted_numbers_have_a_minus_sign_and_given_ones_stay_as_they_are():
     found = message("x.y-z", "{a:.2f} {b:length} {c:.1g} {d} {e}", a=-0.14, b=-4.2, c=-1e-7, d=-3.5, e="T3-T2")
     assert str(found) == "−0.14 −4.200 −1e-07 -3.5 T3-T2"

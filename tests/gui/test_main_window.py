@@ -279,12 +279,15 @@ def test_rows_not_used_are_listed(qtbot):
             message("test.text", "Correct it."),
         ),
         ImportIssue("a.csv", 0, "", "", "note", message("test.text", "Taken as picks")),
+        ImportIssue("b.csv", 0, "z", "", "warning", message("test.text", "All horizons have the same z")),
     )
     dialog = IssuesDialog(Site("", {}, issues=issues, counts=(TableCount("b.csv", 10, 9, 1),)))
     qtbot.addWidget(dialog)
     model = dialog.table.model()
     assert dialog.balance.text() == "Rows read: 10 = 9 used + 1 listed here."
-    row = [model.index(0, column).data() for column in range(7)]
+    # Many rows would hide what is wrong with the whole file.
+    assert [model.index(row, 0).data() for row in range(3)] == ["to check", "not used", "note"]
+    row = [model.index(1, column).data() for column in range(7)]
     assert row == ["not used", "b.csv", "9", "z", "abc", "This is not a number", "Correct it."]
 
 
