@@ -102,7 +102,7 @@ def draw_section(
     site : Site
         Ground and holes.
     cut : mapping of str to sequence of Profile
-        What the section cuts of each horizon, in the order of their colours.
+        What the section cuts of each horizon.
     points : mapping of str to PointSet
         Points of each horizon; those near the section are drawn.
     t : Language
@@ -120,7 +120,7 @@ def draw_section(
         axes = figure.add_axes((LEFT / SHEET, BELOW / height, wide / SHEET, tall / height))
         axes.set_xlim(0, length)
         axes.set_ylim(low, high)
-        colours = horizon_colours(cut)
+        colours = horizon_colours([*site.horizons, *cut])
         ground = _ground(axes, section, site.ground, length)
         for name, lines in cut.items():
             for line in lines:

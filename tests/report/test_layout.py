@@ -13,6 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from results import examined, horizon
 
 from geofit.data.languages import EN, ZH
+from geofit.data.points import PointSet
 from geofit.data.site import Ground, Hole, Section, Site
 from geofit.data.title_block import Revision, TitleBlock
 from geofit.report import fonts
@@ -35,9 +36,10 @@ from geofit.report.pdf import write_pdf
 from geofit.report.pdf_table import FEWEST, LaidTable, page_ends
 from geofit.report.pdf_text import Pen, Typesetter
 from geofit.report.pictures import draw_pictures, draw_sections, draw_site
-from geofit.report.profile import along_polyline, profiles, report_sections
+from geofit.report.profile import Profile, along_polyline, profiles, report_sections
 from geofit.report.scene import network_scene
 from geofit.report.section_sheet import draw_section, section_sheet
+from geofit.report.style import horizon_colours
 
 pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
 Image = pytest.importorskip("PIL.Image", reason="Pillow comes with fpdf2")
@@ -291,6 +293,16 @@ def test_the_legend_of_a_section_names_the_kinds_of_holes_that_are_drawn():
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert "borehole" in words
     assert "adit" not in words
+
+
+def test_a_horizon_keeps_its_colour_in_a_report_of_some_horizons():
+    section = Section("L", np.array([[0.0, 0.0], [1000.0, 0.0]]))
+    none = PointSet(np.zeros((0, 3)))
+    ground = Ground(np.array([0.0, 1000.0]), np.array([-10.0, 10.0]), np.full((2, 2), 1500.0))
+    site = Site("dam", {"upper": none, "lower": none}, ground=ground)
+    cut = {"lower": [Profile("lower", np.array([[0.0, 1400.0], [1000.0, 1410.0]]))]}
+    figure = draw_section(section_sheet(section, site, cut, "L"), section, site, cut, {})
+    assert horizon_colours(site.horizons)["lower"] in [line.get_color() for line in figure.axes[0].lines]
 
 
 def test_names_of_holes_at_the_ends_of_a_section_keep_clear_of_those_of_the_ends():
