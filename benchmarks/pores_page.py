@@ -31,7 +31,7 @@ _TRUTHS = """
 One line for each acceptance test, with what is asked of it and what was measured in this run; "asserted" where only the
 test itself says so. Tests are those in `tests/pores` if no other folder is named; [Tests of pores](pore_tests.md) lists
 all of them with their cases, and where one asks for less than the method does. Not met: 24, the network within 25 % on
-eight face-centred cells of 40, 44, 48 and 72 voxels (+25 to +44 %); no lattice Boltzmann solver is included.
+packs of 2 x 2 x 2 face-centred cells of 40, 48 and 72 voxels (+31 to +45 %); no lattice Boltzmann solver is included.
 """
 _PNEXTRACT = """
 ## pnextract
