@@ -143,15 +143,17 @@ class ReportDialog(TaskDialog):
         layout.addLayout(self.message_row)
         layout.addStretch(1)
         layout.addLayout(self.foot(self.view))
-        self.setMinimumWidth(560)
         self._ask_to_examine()
+        # A minimum of its own would hide that of the fields, which large text makes wider.
+        self.setMinimumWidth(max(560, layout.minimumSize().width()))
 
     def _ask_to_examine(self) -> None:
         """Offer to examine the horizons of which nothing is known away from their data."""
         unknown = [result.name for result in self._results if result.prediction is None]
         # The names of many horizons would make the dialog wider than the screen; the tip has them all.
         metrics = self.fontMetrics()
-        width = _NAMES * metrics.averageCharWidth()
+        # Not the average of all letters of a font: with Chinese ones behind it that is nearly twice as wide.
+        width = metrics.horizontalAdvance("n" * _NAMES)
         names = metrics.elidedText(", ".join(unknown), Qt.TextElideMode.ElideRight, width)
         self.examine.setText(self.tr("&Examine first: {names}").format(names=literal(names)))
         tip = self.tr("The prediction error away from the data, found by leaving out holes.")

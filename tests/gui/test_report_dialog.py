@@ -75,7 +75,7 @@ def test_of_a_surface_with_nothing_behind_it_nothing_is_handed_back(qtbot, tmp_p
     assert dialog.examine.isVisible()
 
 
-def test_the_names_of_many_horizons_neither_widen_the_dialog_nor_cut_its_labels(qtbot):
+def test_the_names_of_many_horizons_neither_widen_the_dialog_nor_cut_its_labels(qtbot, app):
     site, surface = sample_site(), fitted(FAULT)
     names = [f"Base of the weathered granodiorite & cover {k}" for k in range(25)]
     dialog = ReportDialog(site, [HorizonResult(surface.with_(name=name), site) for name in names])
