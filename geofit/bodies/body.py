@@ -21,7 +21,6 @@ from geofit.implicit.mesh import TriangleMesh
 from geofit.implicit.volume import Extent
 
 if TYPE_CHECKING:
-    from geofit.bodies.reliability import Reliability
     from geofit.bodies.simulate import BodyVolumes
 
 __all__ = ["BodyFit"]
@@ -132,13 +131,6 @@ class BodyFit(ImplicitBody):
     def _first(self) -> TriangleMesh:
         """Triangles of cells of :attr:`overview_spacing`, which look for the surface everywhere."""
         return self.local_mesh(self.overview_spacing)
-
-    @cached_property
-    def reliability(self) -> Reliability:
-        """How reliable the chance of lying inside is, by the holes of the body; a body in parts is fitted anew."""
-        from geofit.bodies.holes_out import reliability_of
-
-        return reliability_of(self)
 
     def _known_surface(self, spacing: float) -> Floats | None:
         if spacing >= self.overview_spacing:

@@ -21,7 +21,6 @@ from geofit.streaming.executors import Where
 
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
-    from geofit.bodies.reliability import Reliability
 
 __all__ = ["CrossValidation", "HoleScore", "MethodScore", "leave_one_hole_out", "left_out_body"]
 
@@ -172,10 +171,8 @@ def leave_one_hole_out(
     kriged = _kriged(data, names) if compared else {}
     # A new one: what the body has computed so far need not travel.
     bare = replace(body, accuracy=None)
-    # A body in parts is fitted several times for its reliability: once for all folds, not again in each.
-    known = body.reliability if body.fitted.system is None else None
     where = Where(scheduler, workers, folder)
-    found = dict(where.run(_without_hole, [(bare, name, compared, known) for name in names]))
+    found = dict(where.run(_without_hole, [(bare, name, compared) for name in names]))
     for k, name in enumerate(names):
         score = found[k]
         if isinstance(score, str):
@@ -190,29 +187,29 @@ def leave_one_hole_out(
     return CrossValidation(methods, skipped, "section" if flat and names else "hole")
 
 
-def _with_band(line: _Line, body: BodyFit, known: Reliability | None) -> HoleScore:
+def _with_band(line: _Line, body: BodyFit) -> HoleScore:
     """Score a body fitted without a hole or a section along it, and its band at the contacts."""
     score = line.score(body.value(line.xyz))
     if not len(line.places):
         return score
     if line.flat:
         score = replace(score, contact_errors=tuple(np.abs(body.distance(line.places)).tolist()), missed=0)
-    posterior = BodyPosterior(body, known)
-    within = line.places[posterior.open_ground(line.places)]
-    chance = posterior.probability(within)
+    posterior = BodyPosterior(body)
+    known = line.places[posterior.open_ground(line.places)]
+    chance = posterior.probability(known)
     covered = int(((chance >= BAND) & (chance <= 1 - BAND)).sum())
-    return replace(score, contacts=len(within), covered=covered, beyond=len(line.places) - len(within))
+    return replace(score, contacts=len(known), covered=covered, beyond=len(line.places) - len(known))
 
 
-def _without_hole(task: tuple[BodyFit, str, bool, Reliability | None]) -> tuple[HoleScore, ...] | str:
+def _without_hole(task: tuple[BodyFit, str, bool]) -> tuple[HoleScore, ...] | str:
     """Return the scores of a body and, where asked, of a linear RBF without one hole, or why no body can be fitted."""
-    body, name, compared, known = task
+    body, name, compared = task
     rest, line = body.data.without(name), _Line.of(body.data, name)
     try:
         fitted = fit_field(rest, body.settings)
     except FitError as error:
         return str(error)
-    own = _with_band(line, replace(body, data=rest, fitted=fitted), known)
+    own = _with_band(line, replace(body, data=rest, fitted=fitted))
     return (own, line.score(_linear_rbf(rest, line.xyz))) if compared else (own,)
 
 

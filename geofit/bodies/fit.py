@@ -160,7 +160,6 @@ def fit_field(data: BodyData, settings: BodySettings) -> Fitted:
         fit.rounds,
         time.perf_counter() - start,
         unsupported,
-        fit_field,
         buried,
     )
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.bodies.data import BodyData, Prepared
+from geofit.bodies.data import Prepared
 from geofit.bodies.field import BodyField
 from geofit.bodies.rbf import Saddle
 from geofit.bodies.region import Region
-from geofit.bodies.settings import BodySettings
 
 __all__ = ["BodyRaster", "Fitted"]
 
@@ -39,8 +37,7 @@ class Fitted:
 
     ``survey`` is a look at the body on a raster, ``system`` the factorised system of contacts and active samples (None
     where parts were blended), ``active`` the number of active samples, ``conditions`` all that the field satisfies,
-    ``buried`` the share of contacts that lie on cavities of the body. ``refit`` is the function that made it, for fits
-    of a part of the data.
+    ``buried`` the share of contacts that lie on cavities of the body.
     """
 
     field: BodyField
@@ -53,5 +50,4 @@ class Fitted:
     rounds: int
     seconds: float
     unsupported: int
-    refit: Callable[[BodyData, BodySettings], Fitted]
     buried: float = 0.0

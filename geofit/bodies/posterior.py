@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,12 +21,11 @@ from geofit.bodies.active import farthest_apart
 from geofit.bodies.clusters import block_scale, sections_of
 from geofit.bodies.kernels import CUBIC, KERNELS, LINEAR
 from geofit.bodies.rbf import Saddle
-from geofit.bodies.reliability import SHIFT, Reliability
 
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
 
-__all__ = ["ON_SURFACE", "SPREAD", "BodyPosterior", "scored"]
+__all__ = ["ON_SURFACE", "SPREAD", "BodyPosterior"]
 
 Floats = NDArray[np.float64]
 
@@ -43,11 +42,12 @@ TRUST = 30
 BETWEEN = 1.35
 #: What makes the chance of lying inside come true on planted bodies of fifteen shapes (benchmarks/bodies.py; judged on
 #: other bodies, patterns of holes and noise): factors of the standard deviation in the body and off it - samples that
-#: are logged outside bound it, and only those that are active are in the covariance.
+#: are logged outside bound it, and only those that are active are in the covariance - and a shift, as fields of r^3
+#: swell a little where data are few.
 WITHIN = 0.87
 WITHOUT = 0.63
-#: The chance of lying inside at the surface itself, before the body's own holes have their say: the normal distribution
-#: at -SHIFT.
+SHIFT = 0.16
+#: The chance of lying inside at the surface itself: the normal distribution at -SHIFT.
 ON_SURFACE = math.erfc(SHIFT / math.sqrt(2)) / 2
 #: The factor with which 80 % of their volumes fall between P10 and P90. It is larger: what a field of one roughness
 #: misses of a shape is the same all over a body and does not cancel in its volume.
@@ -62,17 +62,9 @@ class BodyPosterior:
     ----------
     body : BodyFit
         The body.
-    known : Reliability, optional
-        How reliable the chance of lying inside is; by default, what the body's holes show.
     """
 
     body: BodyFit
-    known: Reliability | None = None
-
-    @property
-    def reliability(self) -> Reliability:
-        """How reliable the chance of lying inside is."""
-        return self.body.reliability if self.known is None else self.known
 
     @cached_property
     def system(self) -> Saddle:
@@ -155,12 +147,12 @@ class BodyPosterior:
         return np.asarray(self.deviation(xyz) / np.maximum(slope, 1e-300))
 
     def probability(self, xyz: ArrayLike) -> Floats:
-        """Return the probability (n,) that each of (n, 3) places lies inside the body.
+        """Return the probability (n,) that each of (n, 3) places lies inside the body."""
+        from scipy.special import ndtr
 
-        By the holes of the body, see :mod:`geofit.bodies.reliability`.
-        """
         value = self.body.value(xyz)
-        chance = self.reliability.chance(scored(value, self.deviation(xyz)), self._counted(xyz))
+        deviation = np.where(value < 0, WITHIN, WITHOUT) * self.deviation(xyz)
+        chance = ndtr(-value / np.maximum(deviation, 1e-12) - SHIFT)
         return np.where(self.open_ground(xyz), chance, value < 0)
 
     def margin(self, xyz: ArrayLike, chance: float) -> Floats:
@@ -168,27 +160,14 @@ class BodyPosterior:
 
         Its zero is the line or surface of that chance: the probability itself is too steep for a raster to find it.
         """
+        from scipy.special import ndtri
+
         value = self.body.value(xyz)
-        beyond = -self.reliability.score(chance, self._counted(xyz))
-        factor = np.where(beyond > 0, WITHOUT, WITHIN)
+        beyond = -float(ndtri(chance)) - SHIFT
+        factor = WITHOUT if beyond > 0 else WITHIN
         return np.where(
             (value < 0) | self.open_ground(xyz), value - beyond * factor * self.deviation(xyz), np.abs(value)
         )
-
-    def away(self, xyz: ArrayLike) -> Floats:
-        """Return the distance (n,) of (n, 3) places in map coordinates to the nearest datum, metres."""
-        return np.asarray(self._tree.query(np.asarray(xyz, float) - self.body.origin)[0])
-
-    def _counted(self, xyz: ArrayLike) -> Floats:
-        """Return the same distances where the reliability depends on them."""
-        return np.zeros(len(np.asarray(xyz))) if self.reliability.usual else self.away(xyz)
-
-    @cached_property
-    def _tree(self) -> Any:
-        from scipy.spatial import cKDTree
-
-        data = self.body.data
-        return cKDTree(np.concatenate([data.contacts, data.inside, data.outside]) - self.body.origin)
 
     def open_ground(self, xyz: ArrayLike) -> NDArray[np.bool_]:
         """Return which of (n, 3) places in map coordinates a realization of the body may reach.
@@ -204,8 +183,3 @@ class BodyPosterior:
             own = np.concatenate([prepared.contacts, prepared.inside]) - self.body.origin
             may &= (cKDTree(own).query(xyz - self.body.origin)[0] <= region.reach) | (self.body.value(xyz) < 0)
         return np.asarray(may)
-
-
-def scored(value: Floats, deviation: Floats) -> Floats:
-    """Return how many standard deviations (n,) inside a body places lie, from values and their deviations, metres."""
-    return np.asarray(-value / np.maximum(np.where(value < 0, WITHIN, WITHOUT) * deviation, 1e-12))
