@@ -323,8 +323,8 @@ def _beyond(body: BodyFit) -> list[Message]:
             "bodies.extent-beyond-data",
             "Along azimuth {azimuth}° and dip {dip}° the body extends over {extent:.1f} m, but the data cover "
             "only {covered:.1f} m of it. No data bound the rest (reach: {reach:.1f} m), so the volume and P10 to P90 "
-            "are assumptions. The section through the middle of the data has {area:.0f} m²: each metre of extent adds "
-            "about {area:.0f} m³. Give data on both sides, or limit the body by its reach or its box.",
+            "are assumptions. The section through the middle of the data has {area:whole} m²: each metre of extent "
+            "adds about {area:whole} m³. Give data on both sides, or limit the body by its reach or its box.",
             azimuth=round(float(np.degrees(np.arctan2(way[0], way[1])))) % 360,
             dip=round(float(np.degrees(np.arcsin(np.clip(-way[2], 0.0, 1.0))))),
             extent=float((high - low)[k]),

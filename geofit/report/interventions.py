@@ -17,23 +17,24 @@ LONGEST = 30
 def interventions(report: AccuracyReport, t: Language) -> Chapter:
     """Lay out what was left out, edited, doubted and suggested, horizon by horizon."""
     blocks: list[Block] = []
-    # Only an examination finds outliers and holes: without one there is no finding, not none.
-    unknown = "" if any(h.prediction for h in report.horizons) else t(
-        "Not examined: the prediction error away from the data."
-    )  # fmt: skip
+    unknown = [h.name for h in report.horizons if h.prediction is None]
     for title, nothing, of in (
         (t("Excluded points"), t("No point was left out by hand."), _excluded),
         (t("Coincident points"), t("No point coincides with another one."), _conflicts),
         (t("Manual edits"), t("No surface was changed by hand."), _edits),
-        (t("Outliers"), unknown or t("None."), _outliers),
-        (t("Suggested boreholes"), unknown or t("No holes are suggested."), _suggestions),
+        (t("Outliers"), t("None."), _outliers),
+        (t("Suggested boreholes"), t("No holes are suggested."), _suggestions),
     ):
         found = [(h.name, more) for h in report.horizons if (more := of(h, t))]
+        # Only leaving holes out reveals outliers and where holes are needed.
+        missing = unknown if of in (_outliers, _suggestions) else []
         blocks.append(Heading(title))
-        if not found:
+        if not found and len(missing) < len(report.horizons):
             blocks.append(Paragraph(nothing))
         for name, more in found:
             blocks += [Heading(name, 3), *more]
+        if missing:
+            blocks.append(Paragraph(t("Not examined: {names}.", names=", ".join(missing))))
     return Chapter(t("Excluded points, edits and suggestions"), tuple(blocks), follows=True)
 
 

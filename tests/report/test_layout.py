@@ -31,6 +31,7 @@ from geofit.report.document import (
 from geofit.report.furniture import exaggeration_for, scale_for, scale_text
 from geofit.report.gather import accuracy_report
 from geofit.report.html import write_html
+from geofit.report.interventions import interventions
 from geofit.report.length_axis import upright
 from geofit.report.pdf import write_pdf
 from geofit.report.pdf_table import FEWEST, LaidTable, page_ends
@@ -280,6 +281,24 @@ def test_two_lines_about_the_site_share_their_page_with_the_interventions(report
     texts, _ = _pages(tmp_path / "r.pdf")
     assert "Order of the horizons" in texts[1]
     assert "No point was left out by hand" in texts[1]
+
+
+@pytest.mark.parametrize(("seen", "nothing"), [((), False), (("T2",), True), (("T2", "T3"), True)])
+def test_outliers_and_holes_that_were_not_looked_for_are_not_reported_as_none(seen, nothing):
+    made = [examined(one) if one.name in seen else one for one in (horizon(name="T2"), horizon(name="T3"))]
+    report = accuracy_report(made, [])
+    clean = [
+        replace(one, prediction=replace(one.prediction, outliers=(), suggestions=())) if one.prediction else one
+        for one in report.horizons
+    ]
+    words = [
+        block.text
+        for block in interventions(replace(report, horizons=tuple(clean)), EN).blocks
+        if isinstance(block, Paragraph)
+    ]
+    missing = [name for name in ("T2", "T3") if name not in seen]
+    assert words.count(f"Not examined: {', '.join(missing)}.") == (2 if missing else 0)
+    assert ("None." in words) == ("No holes are suggested." in words) == nothing
 
 
 def test_the_legend_of_a_section_names_the_kinds_of_holes_that_are_drawn():
