@@ -16,7 +16,7 @@ from geofit.data.messages import Message, message
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
 
-__all__ = ["BodyAccuracy", "crossed_pairs", "examine_body"]
+__all__ = ["BodyAccuracy", "across_two_sections", "crossed_pairs", "examine_body"]
 
 Floats = NDArray[np.float64]
 WORST = 20
@@ -29,6 +29,10 @@ FEW = 9
 #: Share of the extent of a body in a direction, beyond all data there, above which its volume is an assumption; nodes
 #: of the raster on which the section through the data is measured, along each side.
 BEYOND, RASTER = 0.5, 120
+#: The same across data that fill two parallel sections: nothing between them shows how a body narrows to its ends. It
+#: is two sections if a gap makes up this part of the data's extent in one of so many directions, and this part of their
+#: size at least; looked for among so many data.
+BEYOND_TWO, GAP, APART, DIRECTIONS, SOME = 0.2, 0.8, 0.01, 180, 5_000
 #: Sides of the box, and how a sentence calls them.
 SIDE_WORDS = {
     "west": message("bodies.side-west", "west"),
@@ -303,33 +307,66 @@ def _beyond(body: BodyFit) -> list[Message]:
         return []
     data = np.concatenate([body.data.contacts, body.data.inside, body.data.outside]) - body.origin
     middle = data.mean(axis=0)
-    axes = np.linalg.svd(data - middle, full_matrices=False)[2]
-    known, reached = ((xyz - middle) @ axes.T for xyz in (data, surface))
+    main = np.linalg.svd(data - middle, full_matrices=False)[2]
+    limits = np.full(len(main), BEYOND)
+    if (between := across_two_sections(data - middle)) is not None:
+        main, limits = np.vstack([main, between]), np.append(limits, BEYOND_TWO)
+    known, reached = ((xyz - middle) @ main.T for xyz in (data, surface))
     low, high = reached.min(axis=0), reached.max(axis=0)
     covered = np.maximum(np.minimum(high, known.max(axis=0)) - np.maximum(low, known.min(axis=0)), 0.0)
-    k = int(np.argmin(covered / (high - low)))
-    if covered[k] >= (1 - BEYOND) * (high - low)[k]:
+    share = 1.0 - covered / (high - low)
+    k = int(np.argmax(share / limits))
+    if share[k] <= limits[k]:
         return []
-    across = np.delete(axes, k, axis=0)
-    first, last = np.delete(low, k), np.delete(high, k)
+    axis = main[k]
+    # Two directions at right angles to it span the section.
+    across = np.linalg.svd(axis[None])[2][1:]
+    first, last = (end((surface - middle) @ across.T, axis=0) for end in (np.min, np.max))
     steps = (np.arange(RASTER) + 0.5) / RASTER
     u, v = np.meshgrid(*(first + steps[:, None] * (last - first)).T)
-    section = body.field.value(middle + np.column_stack([u.ravel(), v.ravel()]) @ across) < 0
+    # Between two sections that are not joined there is none in the middle.
+    places = middle + np.column_stack([u.ravel(), v.ravel()]) @ across
+    ends = np.clip([known[:, k].min(), 0.0, known[:, k].max()], low[k], high[k])
+    section = max(float((body.field.value(places + end * axis) < 0).mean()) for end in ends)
     # An axis has no sign: it is stated downwards, a level one from north over east to south.
-    level = abs(axes[k, 2]) < 0.01
-    way = -axes[k] if (axes[k, 0] < 0 if level else axes[k, 2] > 0) else axes[k]
+    level = abs(axis[2]) < 0.01
+    way = -axis if (axis[0] < 0 if level else axis[2] > 0) else axis
     return [
         message(
             "bodies.extent-beyond-data",
             "Along azimuth {azimuth}° and dip {dip}° the body extends over {extent:.1f} m, but the data cover "
             "only {covered:.1f} m of it. No data bound the rest (reach: {reach:.1f} m), so the volume and P10 to P90 "
-            "are assumptions. The section through the middle of the data has {area:whole} m²: each metre of extent "
+            "are assumptions. The section of the body at the data has up to {area:whole} m²: each metre of extent "
             "adds about {area:whole} m³. Give data on both sides, or limit the body by its reach or its box.",
             azimuth=round(float(np.degrees(np.arctan2(way[0], way[1])))) % 360,
             dip=round(float(np.degrees(np.arcsin(np.clip(-way[2], 0.0, 1.0))))),
             extent=float((high - low)[k]),
             covered=float(covered[k]),
             reach=body.region.reach,
-            area=float(section.mean() * np.prod(last - first)),
+            area=section * float(np.prod(last - first)),
         ).with_severity("warning")
     ]
+
+
+def across_two_sections(data: Floats) -> Floats | None:
+    """Return the unit direction (3,) across the two parallel sections, vertical or level, that data fill; else None.
+
+    Parameters
+    ----------
+    data : (n, 3) array
+        Places about any origin, metres.
+    """
+    if len(data) > SOME:
+        data = np.random.default_rng(0).choice(data, SOME, replace=False)
+    size = float(np.ptp(data, axis=0).max())
+    turns = np.arange(DIRECTIONS) * np.pi / DIRECTIONS
+    for way in (*np.column_stack([np.cos(turns), np.sin(turns), np.zeros(DIRECTIONS)]), np.array([0.0, 0.0, 1.0])):
+        along = data @ way
+        order = np.argsort(along, kind="stable")
+        gaps = np.diff(along[order])
+        # One section does not count, nor does the width of its holes.
+        if len(gaps) and gaps.max() > max(GAP * np.ptp(along), APART * size):
+            first, second = np.split(data[order], [int(np.argmax(gaps)) + 1])
+            sides, axes = np.linalg.svd(np.concatenate([first - first.mean(axis=0), second - second.mean(axis=0)]))[1:]
+            return np.asarray(axes[2] if sides[1] > APART * sides[0] else way)
+    return None

@@ -30,7 +30,8 @@ class BlockModel:
     """Cubic blocks in map coordinates.
 
     ``centres`` (n, 3) with z fastest; ``spacing`` is the edge in metres, ``shape`` the blocks along x, y, z; ``value``
-    (n,) is the field at each centre, negative inside, and ``probability`` (n,) the chance that the centre lies inside.
+    (n,) is the field at each centre, negative inside, and ``probability`` (n,) the chance that the centre lies inside;
+    nan where it is not estimated (:meth:`geofit.bodies.posterior.BodyPosterior.probability`).
     """
 
     centres: Floats

@@ -147,13 +147,25 @@ class BodyPosterior:
         return np.asarray(self.deviation(xyz) / np.maximum(slope, 1e-300))
 
     def probability(self, xyz: ArrayLike) -> Floats:
-        """Return the probability (n,) that each of (n, 3) places lies inside the body."""
+        """Return the probability (n,) that each of (n, 3) places lies inside the body; nan where it is not estimated.
+
+        Ground that the settings leave outside (:meth:`open_ground`) has 0 within the reach of any data. Farther from
+        all data nothing is known. Of samples of Copper Creek's GHv in holes that were left out, none of 689 in ground
+        of the first kind lies inside, and 34 of 226 in that of the second; the field's own chance would be 0.18.
+        """
+        from scipy.spatial import cKDTree
         from scipy.special import ndtr
 
+        xyz, origin = np.asarray(xyz, float), self.body.origin
         value = self.body.value(xyz)
-        deviation = np.where(value < 0, WITHIN, WITHOUT) * self.deviation(xyz)
-        chance = ndtr(-value / np.maximum(deviation, 1e-12) - SHIFT)
-        return np.where(self.open_ground(xyz), chance, value < 0)
+        chance = np.where(value < 0, 1.0, 0.0)
+        may = self.open_ground(xyz)
+        deviation = np.where(value[may] < 0, WITHIN, WITHOUT) * self.deviation(xyz[may])
+        chance[may] = ndtr(-value[may] / np.maximum(deviation, 1e-12) - SHIFT)
+        prepared = self.body.fitted.prepared
+        data = np.concatenate([prepared.contacts, prepared.inside, prepared.outside]) - origin
+        chance[~may & (cKDTree(data).query(xyz - origin)[0] > self.body.region.reach)] = np.nan
+        return chance
 
     def margin(self, xyz: ArrayLike, chance: float) -> Floats:
         """Return a smooth function (n,), metres, of (n, 3) places: negative where the probability is above ``chance``.

@@ -3,7 +3,7 @@
 The section is made of four quarter ellipses, with semi-axes left, right, up and down, linear from one end of a shot to
 the other. In caves up and down are measured vertically, so across a shot of inclination i they count with cos i; along
 shots steeper than 60 degrees they lie along the passage, and the mean of left and right replaces them. Where a shot
-ends, half an ellipsoid closes it, which also fills the outer side of bends.
+ends, half an ellipsoid closes it, or fills the outer side of a bend; what was measured along the next shot is kept.
 """
 
 from __future__ import annotations
@@ -223,8 +223,8 @@ def centreline_body(
 
 def _sweeps(adjusted: AdjustedSurvey, found: Sections, ends: Ends) -> Sweeps:
     survey = adjusted.survey
-    start, end = survey.start[found.shot], survey.end[found.shot]
-    vector = adjusted.xyz[end] - adjusted.xyz[start]
+    start, end = found.place.T
+    vector = adjusted.xyz[survey.end[found.shot]] - adjusted.xyz[survey.start[found.shot]]
     length = np.linalg.norm(vector, axis=1)
     along = vector / length[:, None]
     flat = np.hypot(along[:, 0], along[:, 1])
@@ -237,12 +237,43 @@ def _sweeps(adjusted: AdjustedSurvey, found: Sections, ends: Ends) -> Sweeps:
     # A shot that was surveyed again is the same passage, not another branch.
     links, same = np.unique(np.sort(np.column_stack([start, end]), axis=1), axis=0, return_inverse=True)
     degree = np.bincount(links.ravel(), minlength=len(survey.stations))
+    up = np.cross(right, along)
     # A lone round section ends in half a ball.
     cap = (walls[..., 0] + walls[..., 1] + walls[..., 2] + walls[..., 3]) / 4
     if ends == "flat":
         cap = np.where(np.column_stack([degree[start], degree[end]]) == 1, 0.0, cap)
+    onward = np.zeros((len(start), 2, 3))
+    _bend(cap, onward, np.column_stack([start, end]), same.ravel(), along, (right, up), walls)
     branch = _branches(start, end, degree, same.ravel())
-    return Sweeps(adjusted.xyz[start], along, right, np.cross(right, along), length, walls, cap, branch)
+    return Sweeps(adjusted.xyz[survey.start[found.shot]], along, right, up, length, walls, cap, onward, branch)
+
+
+def _bend(
+    cap: Floats, onward: Floats, place: Ints, same: Ints, along: Floats, frame: tuple[Floats, Floats], walls: Floats
+) -> None:
+    """Set (in place) cap and way onward of each end where other shots go on, (k, 2) and (k, 2, 3).
+
+    The cap fills the outer side of a bend as far as the wall there is from the axis: the mean of all walls would reach
+    through the walls of a slot that turns.
+    """
+    at: dict[int, list[tuple[int, int]]] = {}
+    for shot, ends in enumerate(place.tolist()):
+        for end, station in enumerate(ends):
+            at.setdefault(station, []).append((shot, end))
+    for meeting in at.values():
+        for shot, end in meeting:
+            others = {int(same[k]): (1 - 2 * e) * along[k] for k, e in meeting if same[k] != same[shot]}
+            if not others:
+                continue
+            reach = []
+            for way in others.values():
+                side, level = (-float(way @ axis[shot]) for axis in frame)
+                a, b = walls[shot, end, 1 if side >= 0 else 0], walls[shot, end, 2 if level >= 0 else 3]
+                turn = np.hypot(side, level)
+                reach.append(turn / np.hypot(side / a, level / b) if turn > 1e-6 else min(a, b))
+            cap[shot, end] = max(reach)
+            if len(others) == 1:
+                onward[shot, end] = next(iter(others.values()))
 
 
 def across(walls: Floats, cosine: Floats) -> Floats:

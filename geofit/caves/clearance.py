@@ -20,6 +20,8 @@ Floats = NDArray[np.float64]
 
 #: Triangles nearest by their centres that are measured exactly.
 _NEAREST = 24
+#: Passages thinner than so many spacings may be missing from the triangles.
+_THIN = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +84,8 @@ def clearance(
     step : float
         Distance of the points along a polyline at most, metres.
     spacing : float, optional
-        Lattice of the triangles of the walls, metres; by default :attr:`PassageBody.fine` times 2.
+        Lattice of the triangles of the walls, metres; by default :attr:`PassageBody.fine` times 2. The walls of
+        passages that are too thin for it are points at half of it.
 
     Raises
     ------
@@ -105,10 +108,16 @@ def clearance(
     from scipy.spatial import cKDTree
 
     points = _along(corners, step) if polyline and len(corners) > 1 else corners
-    mesh = body.triangulate(spacing if spacing is not None else 2 * body.fine)
+    mesh_spacing = spacing if spacing is not None else 2 * body.fine
+    mesh = body.triangulate(mesh_spacing)
     triangles = mesh.vertices[mesh.triangles]
     near = cKDTree(triangles.mean(axis=1)).query(points, k=min(_NEAREST, len(triangles)))[1].reshape(len(points), -1)
     foot = _nearest_on_triangles(points, triangles, near)
+    thin = _thin_walls(body, mesh_spacing)
+    if len(thin):
+        away, nearest = map(np.asarray, cKDTree(thin).query(points))
+        lost = away < np.linalg.norm(points - foot, axis=1)
+        foot[lost] = thin[nearest[lost]]
     inside = body.value(points) < 0
     distance = np.linalg.norm(points - foot, axis=1) * np.where(inside, -1.0, 1.0) - radius
     adjusted = body.adjusted
@@ -121,6 +130,30 @@ def clearance(
         tuple(adjusted.survey.stations[i] for i in closest.tolist()),
         np.linalg.norm(adjusted.sigma, axis=1)[closest],
     )
+
+
+def _thin_walls(body: PassageBody, spacing: float) -> Floats:
+    """Return points (n, 3) on the walls of passages that triangles may lose, about half a spacing apart.
+
+    A section is as in :mod:`geofit.caves.body`: four quarter ellipses, linear along the shot.
+    """
+    sweeps = body.sweeps
+    across = (sweeps.walls[..., ::2] + sweeps.walls[..., 1::2]).min(axis=(1, 2))
+    parts = [np.zeros((0, 3))]
+    for k in np.flatnonzero(across < _THIN * spacing).tolist():
+        walls = sweeps.walls[k]
+        t = np.linspace(0.0, 1.0, int(np.ceil(2 * sweeps.length[k] / spacing)) + 1)[:, None, None]
+        # The girth is at most 2 pi times the longest semi-axis, so the points are at most half a spacing apart.
+        turn = np.linspace(0, 2 * np.pi, 13 * int(np.ceil(walls.max() / spacing)) + 3, endpoint=False)[:, None]
+        axes = (1 - t) * walls[0] + t * walls[1]
+        side, level = np.cos(turn), np.sin(turn)
+        right = side * np.where(side >= 0, axes[..., 1:2], axes[..., 0:1])
+        up = level * np.where(level >= 0, axes[..., 2:3], axes[..., 3:4])
+        way = sweeps.length[k] * t * sweeps.along[k] + right * sweeps.right[k] + up * sweeps.up[k]
+        parts.append((sweeps.origin[k] + way).reshape(-1, 3))
+    points = np.concatenate(parts)
+    # Where another passage is, there is no wall.
+    return np.asarray(points[body.value(points) > -(body.blend / 4 + 1e-6)])
 
 
 def excavation_points(excavation: AdjustedSurvey, step: float = 1.0) -> tuple[Floats, float]:

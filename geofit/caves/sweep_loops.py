@@ -22,13 +22,19 @@ MARGIN = 4
 
 def _arrays(sweeps: Sweeps) -> tuple[Any, ...]:
     s = sweeps
-    return s.origin, s.along, s.right, s.up, s.length, s.walls, s.cap
+    return s.origin, s.along, s.right, s.up, s.length, s.walls, s.cap, s.onward
 
 
 def extremes(sweeps: Sweeps) -> tuple[Floats, Floats]:
-    """Return the largest and smallest semi-axis (k,), (k,) of each sweep; 0 where an end is flat."""
+    """Return the largest and smallest semi-axis (k,), (k,) of each sweep; 0 where an end is flat.
+
+    The smallest one of a sweep that another one goes on from is that of its branch: beyond the end the others count.
+    """
     most = np.maximum(sweeps.walls.max(axis=(1, 2)), sweeps.cap.max(axis=1))
-    return most, np.minimum(sweeps.walls.min(axis=(1, 2)), sweeps.cap.min(axis=1))
+    own = np.minimum(sweeps.walls.min(axis=(1, 2)), sweeps.cap.min(axis=1))
+    least = np.full(sweeps.branch.max(initial=-1) + 1, np.inf)
+    np.minimum.at(least, sweeps.branch, own)
+    return most, np.where(sweeps.onward.any(axis=(1, 2)), least[sweeps.branch], own)
 
 
 def half_axes(sweeps: Sweeps) -> Floats:
@@ -108,7 +114,7 @@ def _loops() -> tuple[Any, Any, Any, Any]:
     from numba import njit
 
     @njit(cache=True)
-    def sweep(x, y, z, n, origin, along, right, up, length, walls, cap):  # type: ignore[no-untyped-def]  # pragma: no cover
+    def sweep(x, y, z, n, origin, along, right, up, length, walls, cap, onward):  # type: ignore[no-untyped-def]  # pragma: no cover
         qx, qy, qz = x - origin[n, 0], y - origin[n, 1], z - origin[n, 2]
         s = qx * along[n, 0] + qy * along[n, 1] + qz * along[n, 2]
         v = qx * right[n, 0] + qy * right[n, 1] + qz * right[n, 2]
@@ -122,10 +128,15 @@ def _loops() -> tuple[Any, Any, Any, Any]:
         if cap[n, 0] == 0.0:
             plane = -s
         elif s < 0:
+            if qx * onward[n, 0, 0] + qy * onward[n, 0, 1] + qz * onward[n, 0, 2] > 0:
+                return np.inf
             over, axis = -s, cap[n, 0]
         if cap[n, 1] == 0.0:
             plane = max(plane, s - length[n])
         elif s > length[n]:
+            ex, ey, ez = qx - length[n] * along[n, 0], qy - length[n] * along[n, 1], qz - length[n] * along[n, 2]
+            if ex * onward[n, 1, 0] + ey * onward[n, 1, 1] + ez * onward[n, 1, 2] > 0:
+                return np.inf
             over, axis = s - length[n], cap[n, 1]
         away = np.sqrt(v * v + w * w + over * over)
         rho = np.sqrt((v / a) ** 2 + (w / b) ** 2 + (over / axis) ** 2)
@@ -159,8 +170,7 @@ def _loops() -> tuple[Any, Any, Any, Any]:
                         away = axis_distance(x, y, z, n, origin, along, length)
                         outside = away - half - most[n]
                         lowest[n] = min(outside, 0.5 * outside)
-                        if least[n] > 0:
-                            bound = min(bound, away + half - least[n])
+                        bound = min(bound, away + half - least[n])
                     count = start[cell]
                     for n in range(len(length)):
                         if lowest[n] <= bound + blend:
@@ -174,7 +184,23 @@ def _loops() -> tuple[Any, Any, Any, Any]:
 
     @njit(cache=True)
     def at_points(  # type: ignore[no-untyped-def]  # pragma: no cover
-        xyz, origin, along, right, up, length, walls, cap, branch, corner, width, shape, start, member, blend, found
+        xyz,
+        origin,
+        along,
+        right,
+        up,
+        length,
+        walls,
+        cap,
+        onward,
+        branch,
+        corner,
+        width,
+        shape,
+        start,
+        member,
+        blend,
+        found,
     ):
         for p in range(len(xyz)):
             x, y, z = xyz[p]
@@ -188,7 +214,7 @@ def _loops() -> tuple[Any, Any, Any, Any]:
             owner = -1
             for m in range(first, last):
                 n = member[m] if listed else m
-                here = sweep(x, y, z, n, origin, along, right, up, length, walls, cap)
+                here = sweep(x, y, z, n, origin, along, right, up, length, walls, cap, onward)
                 if branch[n] == owner:
                     best = min(best, here)
                 elif here < best:
@@ -214,14 +240,28 @@ def _loops() -> tuple[Any, Any, Any, Any]:
                 level = abs(qx * up[n, 0] + qy * up[n, 1] + qz * up[n, 2]) - reach[n, 1]
                 nearest = max(away - most[n], side, level) - half
                 low[k] = min(low[k], nearest, 0.5 * nearest)
-                # Near a flat end the plane may exceed what the distance from the axis says.
-                if least[n] > 0:
-                    high[k] = min(high[k], away + half - least[n])
+                high[k] = min(high[k], away + half - least[n])
             low[k] -= blend / 4
 
     @njit(cache=True)
     def painted(  # type: ignore[no-untyped-def]  # pragma: no cover
-        first, last, corner, spacing, origin, along, right, up, length, walls, cap, branch, far, best, second, owner
+        first,
+        last,
+        corner,
+        spacing,
+        origin,
+        along,
+        right,
+        up,
+        length,
+        walls,
+        cap,
+        onward,
+        branch,
+        far,
+        best,
+        second,
+        owner,
     ):
         for n in range(len(length)):
             for i in range(first[n, 0], last[n, 0] + 1):
@@ -235,7 +275,7 @@ def _loops() -> tuple[Any, Any, Any, Any]:
                             continue
                         if abs(qx * up[n, 0] + qy * up[n, 1] + qz * up[n, 2]) > far[n, 1]:
                             continue
-                        here = sweep(x, y, z, n, origin, along, right, up, length, walls, cap)
+                        here = sweep(x, y, z, n, origin, along, right, up, length, walls, cap, onward)
                         if branch[n] == owner[i, j, k]:
                             best[i, j, k] = min(best[i, j, k], here)
                         elif here < best[i, j, k]:

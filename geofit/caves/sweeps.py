@@ -27,6 +27,9 @@ class Sweeps:
         Semi-axes left, right, up and down across the shot at start and end, metres.
     cap : (k, 2) array
         Semi-axis of the ellipsoid along the shot at start and end; 0 for a flat end.
+    onward : (k, 2, 3) array
+        Unit vector from start and end into the only shot that goes on there; 0 where there is none, or several. The
+        ellipsoid fills the outer side of the bend only: where the next shot has a section, that one counts.
     branch : (k,) array of int
         Branch of each shot: a chain of shots between junctions and ends.
     """
@@ -38,6 +41,7 @@ class Sweeps:
     length: Floats
     walls: Floats
     cap: Floats
+    onward: Floats
     branch: Ints
 
     def chosen(self, index: Ints | NDArray[np.bool_]) -> Sweeps:

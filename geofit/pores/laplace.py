@@ -47,9 +47,7 @@ def mobility(volume: RockVolume) -> tuple[NDArray[np.float64], NDArray[np.float3
     """
     from geofit.pores.viscous import profile
 
-    # Without any rock the faces of the sample are the walls.
-    pore = np.pad(volume.pore, int(volume.pore.all()))
-    number, order = _numbered(pore)
+    number, order = _numbered(volume.pore)
     u, wall, sweeps = profile(number, order, np.array(volume.edges), _TOLERANCE, _SWEEPS)
     if sweeps < 0:
         raise VolumeError(
@@ -90,14 +88,20 @@ def laplace_permeability(volume: RockVolume, *, progress: Progress | None = None
     Raises
     ------
     VolumeError
-        If an iteration does not converge.
+        If all voxels are pore, as nothing bounds the flow, or an iteration does not converge.
     """
     from scipy import ndimage
 
     from geofit.pores.laplace_loops import assemble
     from geofit.pores.laplace_solve import conjugate_gradients, pieces_in_blocks
+    from geofit.pores.surface import require_rock
     from geofit.pores.viscous import LAYERS, work_and_flow
 
+    require_rock(volume)
+    # A single slice goes on beyond its faces as it is; the mirrored layers there need a second one.
+    if 1 in volume.shape:
+        pore = np.tile(volume.pore, [LAYERS if n == 1 else 1 for n in volume.shape])
+        volume = RockVolume(pore, pore=True, voxel=volume.voxel)
     paths = connectivity(volume).percolates
     label: NDArray[np.int32] = np.asarray(ndimage.label(volume.pore)[0])
     profile, wall = mobility(volume)

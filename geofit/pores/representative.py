@@ -21,7 +21,8 @@ SIZES, SMALLEST = 14, 4
 class RepresentativeVolume:
     """Porosity of cubes of several sizes that fill the sample: ``edge`` (k,) in metres; lowest, mean and highest.
 
-    ``count`` (k,) is the number of cubes of each size.
+    ``count`` (k,) is the number of cubes of each size. Of voxels that are not cubes, ``edge`` is the cube root of the
+    volume of blocks that are cubes but for parts of a voxel.
     """
 
     edge: Floats
@@ -37,7 +38,7 @@ def representative_volume(volume: RockVolume) -> RepresentativeVolume:
     Parameters
     ----------
     volume : RockVolume
-        The sample; its cubes have equal numbers of voxels along the three axes.
+        The sample.
 
     Returns
     -------
@@ -52,11 +53,13 @@ def representative_volume(volume: RockVolume) -> RepresentativeVolume:
     total = np.pad(np.asarray(volume.pore, np.int64), ((1, 0),) * 3)
     for axis in range(3):
         np.cumsum(total, axis=axis, out=total)
-    longest = min(volume.shape)
-    edges = np.unique(np.geomspace(min(SMALLEST, longest), longest, SIZES).round().astype(int))
-    found = [_porosities(total, int(edge)) for edge in edges]
+    voxel, shape = np.array(volume.voxel), np.array(volume.shape)
+    longest = float((shape * voxel).min())
+    sizes = np.geomspace(min(SMALLEST * float(voxel.max()), longest), longest, SIZES)
+    blocks = np.unique(np.clip(np.rint(sizes[:, None] / voxel), 1, shape).astype(int), axis=0)
+    found = [_porosities(total, block) for block in blocks]
     return RepresentativeVolume(
-        edges * volume.unit,
+        np.cbrt((blocks * voxel).prod(axis=1)),
         np.array([phi.min() for phi in found]),
         np.array([phi.mean() for phi in found]),
         np.array([phi.max() for phi in found]),
@@ -64,10 +67,10 @@ def representative_volume(volume: RockVolume) -> RepresentativeVolume:
     )
 
 
-def _porosities(total: NDArray[np.int64], edge: int) -> Floats:
-    """Return the porosity of each cube of ``edge`` voxels; what is left at the high ends of the axes is not counted."""
-    cuts = [np.arange(0, size, edge) for size in total.shape]
+def _porosities(total: NDArray[np.int64], block: NDArray[np.int64]) -> Floats:
+    """Return the porosity of each block of voxels (3,); what is left at the high ends of the axes is not counted."""
+    cuts = [np.arange(0, size, step) for size, step in zip(total.shape, block, strict=True)]
     corners = total[np.ix_(*cuts)]
     for axis in range(3):
         corners = np.diff(corners, axis=axis)
-    return np.asarray(corners.ravel() / edge**3, float)
+    return np.asarray(corners.ravel() / block.prod(), float)

@@ -11,6 +11,7 @@ Coordinates are metres from the low corner of the sample, along the axes of the 
 from __future__ import annotations
 
 import itertools
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -176,6 +177,8 @@ class PoreSurface(OwnField):
         Voxels along each axis, and their edges in metres.
     construction : {"contact", "blend"}
     name : str
+    messages : tuple of Message
+        A warning where blended balls leave ducts of one or two voxels without triangles.
     """
 
     most_cells: ClassVar[int] = 1 << 14
@@ -185,6 +188,7 @@ class PoreSurface(OwnField):
     voxel: tuple[float, float, float]
     construction: Construction
     name: str = "pores"
+    messages: tuple[Message, ...] = ()
 
     def value(self, xyz: ArrayLike) -> Floats:
         """Return the field at (n, 3) points in metres from the low corner: negative in pores."""
@@ -302,6 +306,11 @@ def pore_surface(
     VolumeError
         If a parameter is out of its range, or the network is not of this volume.
 
+    Warns
+    -----
+    UserWarning
+        If a twentieth of the pores or more is so narrow that blended balls have no triangles there.
+
     Notes
     -----
     Implicit pores from balls and throats: Huang et al. (2007); contact points between pore and rock voxels:
@@ -334,8 +343,56 @@ def pore_surface(
     tell(progress, "contacts", 0.0)
     pore = network.pore_of > 0
     part = RockVolume(pore, pore=True, voxel=volume.voxel)
-    body: Field = _contact_field(part) if construction == "contact" else _blended(part, kappa)
-    return PoreSurface(body, volume.shape, volume.voxel, construction)
+    if construction == "contact":
+        return PoreSurface(_contact_field(part), volume.shape, volume.voxel, construction)
+    body = _blended(part, kappa)
+    if (share := _unseen(body, part)) <= MISSED:
+        return PoreSurface(body, volume.shape, volume.voxel, construction)
+    narrow = _narrow(share)
+    # The frame above is that of the decorator.
+    warnings.warn(str(narrow), UserWarning, stacklevel=3)
+    return PoreSurface(body, volume.shape, volume.voxel, construction, messages=(narrow,))
+
+
+def _narrow(share: float) -> Message:
+    return message(
+        "pores.ducts-without-triangles",
+        "{share:.0%} of the pores are one or two voxels wide: blended balls have no triangles there, as no corner of a "
+        "voxel lies inside. Finer voxels of a smaller sample resolve them; the construction 'contact' keeps their "
+        "volume.",
+        share=share,
+    ).with_severity("warning")
+
+
+def _unseen(body: Field, volume: RockVolume) -> float:
+    """Return the share of the pores in cells, as large as voxels, of which no corner lies in the body."""
+    from scipy import ndimage
+
+    near = volume.pore
+    if volume.cubic:
+        # A cube without rock at its sides has a ball that contains its corners.
+        near = near & ~ndimage.binary_erosion(near, border_value=1)
+    # Cells are as large as the shortest edge.
+    parts = np.maximum(np.rint(volume.edges), 1).astype(int)
+    for axis in range(3):
+        near = near.repeat(parts[axis], axis=axis)
+    size = np.array(volume.voxel) / parts
+    unseen, before = 0, np.zeros(np.add(near.shape[1:], 1), bool)
+    for plane in range(near.shape[0] + 1):
+        corners = np.argwhere(_at_corners(np.pad(near[max(plane - 1, 0) : plane + 1].any(axis=0), 1)))
+        places = np.column_stack([np.full(len(corners), plane), corners]) * size
+        inside = np.zeros_like(before)
+        inside[tuple(corners.T)] = body.value(places) < 0
+        if plane:
+            unseen += int((near[plane - 1] & ~_at_corners(before | inside)).sum())
+        before = inside
+    return unseen / int(volume.pore.sum() * parts.prod())
+
+
+def _at_corners(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return whether any of four neighbours that meet in a corner of an array is true, one shorter along each axis."""
+    pairs = flags[1:] | flags[:-1]
+    return np.asarray(pairs[:, 1:] | pairs[:, :-1])
 
 
 def require_rock(volume: RockVolume | SlicedVolume | PoreNetwork) -> None:

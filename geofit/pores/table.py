@@ -128,5 +128,5 @@ def _figures(volume: RockVolume, network: PoreNetwork, laplace: bool) -> PoreFig
         grain,
         kozeny_permeability(found.connected, grain, CARMAN) if phi < 1 and specific > 0 else float("inf"),
         network_permeability(network) if phi < 1 else None,
-        laplace_permeability(volume) if laplace else None,
+        laplace_permeability(volume) if laplace and phi < 1 else None,
     )

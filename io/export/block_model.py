@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isnan
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,7 +22,8 @@ def write_block_model(body: BodyFit, path: str | PathLike[str], spacing: float |
     """Write every block around a body, in the format of the file's ending.
 
     ``.csv``: columns ``x``, ``y``, ``z`` of the centre in map coordinates and the edge ``size``, metres; ``field``,
-    negative inside, near the surface about the distance in metres; ``probability`` that the centre lies inside.
+    negative inside, near the surface about the distance in metres; ``probability`` that the centre lies inside, empty
+    where it is not estimated (:meth:`geofit.bodies.posterior.BodyPosterior.probability`), which is nan in other files.
     ``.omf`` and ``.geoh5``: a block model with ``field`` and ``probability`` at its cells.
 
     Parameters
@@ -65,4 +67,7 @@ def _write_csv(model: BlockModel, path: str | PathLike[str]) -> None:
     rows = zip(*model.centres.T.tolist(), model.value.tolist(), model.probability.tolist(), strict=True)
     with replacing(path) as part, part.open("w", encoding="utf-8", newline="\n") as out:
         out.write("x,y,z,size,field,probability\n")
-        out.writelines(f"{x:.4f},{y:.4f},{z:.4f},{model.spacing:.4f},{f:.6g},{p:.4f}\n" for x, y, z, f, p in rows)
+        out.writelines(
+            f"{x:.4f},{y:.4f},{z:.4f},{model.spacing:.4f},{f:.6g},{'' if isnan(p) else f'{p:.4f}'}\n"
+            for x, y, z, f, p in rows
+        )

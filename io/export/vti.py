@@ -26,7 +26,7 @@ def write_vti(
     """Write the field of a body at the nodes of a raster around it.
 
     Point arrays: ``field``, negative inside, near the surface about the distance in metres; ``probability`` of lying
-    inside.
+    inside, nan where it is not estimated (:meth:`geofit.bodies.posterior.BodyPosterior.probability`).
 
     Parameters
     ----------

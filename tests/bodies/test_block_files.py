@@ -12,8 +12,10 @@ import pytest
 from bodies.planted import ORIGIN, SIZE, drilled, ellipsoid
 from geofit.bodies.blocks import block_model
 from geofit.bodies.body import BodyFit
+from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_body
 from geofit.bodies.posterior import ON_SURFACE, BodyPosterior
+from geofit.bodies.settings import BodySettings
 from geofit.data.errors import InputError, SettingsError
 from geofit.io.export.block_model import write_block_model
 from geofit.io.export.ifc import write_ifc
@@ -137,3 +139,23 @@ def test_bodies_in_ifc(ring: BodyFit, two: BodyFit, tmp_path: Path) -> None:
     assert again.read_bytes() == path.read_bytes()
     with pytest.raises(InputError, match="not among the bodies"):
         write_ifc({}, path, bodies={"ring": ring}, voids=["cave"])
+
+
+def test_no_chance_is_stated_beyond_the_reach_of_the_data(tmp_path: Path) -> None:
+    """It was 0 there, although of real samples in such ground, in holes that were left out, 15 % lie inside."""
+    unit = np.random.default_rng(1).normal(size=(60, 3))
+    unit /= np.linalg.norm(unit, axis=1)[:, None]
+    middles = np.array([[0.0, 0.0, 0.0], [160.0, 0.0, 0.0]])
+    shells = [(middles[:, None] + radius * unit).reshape(-1, 3) for radius in (10.0, 15.0)]
+    body = fit_body(BodyData(shells[0], middles, shells[1]), BodySettings(reach=40.0))
+    model = block_model(body, 8.0)
+    data = np.concatenate([*shells, middles])
+    far = np.linalg.norm(model.centres[:, None] - data, axis=2).min(axis=1) > 40.0
+    assert far.sum() > 50
+    assert (np.isnan(model.probability) == far).all()
+    known = model.probability[~far]
+    assert ((known >= 0) & (known <= 1)).all()
+    assert known.max() > 0.9
+    write_block_model(body, tmp_path / "blocks.csv", 8.0)
+    cells = [row.split(",")[5] for row in (tmp_path / "blocks.csv").read_text(encoding="utf-8").splitlines()[1:]]
+    assert [cell == "" for cell in cells] == far.tolist()

@@ -31,7 +31,11 @@ def plain(body: PassageBody, points):
         over = np.where(cap == 0, 0, over)
         away = np.sqrt(v**2 + w**2 + over**2)
         rho = np.sqrt((v / a) ** 2 + (w / b) ** 2 + (over / np.where(cap == 0, 1, cap)) ** 2)
-        values.append(np.maximum(away - away / rho, plane))
+        found = np.maximum(away - away / rho, plane)
+        # Beyond a bend the next shot counts.
+        beyond = np.where((x < 0)[:, None], s.onward[n, 0], s.onward[n, 1])
+        tip = np.where((x < 0)[:, None], q, q - s.length[n] * s.along[n])
+        values.append(np.where(((x < 0) | (x > s.length[n])) & ((tip * beyond).sum(axis=1) > 0), np.inf, found))
     values = np.array(values)
     by_branch = np.array([values[s.branch == k].min(axis=0) for k in np.unique(s.branch)])
     by_branch.sort(axis=0)
@@ -219,6 +223,40 @@ def test_vertical_walls_of_a_sloping_cave_passage():
     assert body.sweeps.volumes.sum() == pytest.approx(np.pi * 4 * 20, rel=1e-9)
     shaft = centreline_body(chain([[0, 0, 0], [0, 0, -20]], 2.0, across=False), ends="flat")
     assert shaft.sweeps.volumes.sum() == pytest.approx(np.pi * 4 * 20, rel=1e-9)
+
+
+def sized(points, walls):
+    """A tunnel with walls (n, 4) across it, left, right, up and down, at each of its points."""
+    shots = ShotList(across=True)
+    for k in range(len(points) - 1):
+        shot = shots.add(str(k), str(k + 1), np.subtract(points[k + 1], points[k]), k)
+        shots.add_walls(str(k), shot, walls[k])
+    shots.add_walls(str(len(points) - 1), shot, walls[-1])
+    return centreline_body(shots.survey("sized"), ends="flat")
+
+
+@pytest.mark.parametrize("step", [2.0, 4.0, 8.0])
+def test_a_wide_station_does_not_fill_the_narrow_ones_next_to_it(step):
+    """The cap of the wide end reached over the next stations: up to 2.7 times the volume between the measured walls."""
+    points = np.outer(np.arange(9) * step, [0.6, 0.8, 0.0])
+    body = sized(points, [[5.0] * 4 if k % 2 else [1.0] * 4 for k in range(9)])
+    assert body.volume() == pytest.approx(body.sweeps.volumes.sum(), rel=0.01)
+    narrow = points[4] + np.outer([0.9, 1.1], [0.8, -0.6, 0.0])
+    assert (body.value(narrow) < 0).tolist() == [True, False]
+
+
+@pytest.mark.parametrize("angle", [20, 45, 90])
+@pytest.mark.parametrize("walls", [[0.25, 0.25, 5.0, 5.0], [1.5, 1.5, 1.5, 1.5]])
+def test_a_bend_does_not_reach_through_its_wall(angle, walls):
+    """A slot 0.5 m wide and 10 m high that turns had spikes of 2.6 m at each bend, half of its volume more."""
+    half = np.radians(angle / 2)
+    turns = [[5 * np.cos(half), 5 * np.sin(half) * (-1) ** k, 0.0] for k in range(10)]
+    body = sized(np.vstack([np.zeros(3), np.cumsum(turns, axis=0)]), [walls] * 11)
+    assert body.volume() == pytest.approx(body.sweeps.volumes.sum(), rel=0.03)
+    # The outer side of a bend is filled as far as the wall.
+    corner, out = np.sum(turns[:1], axis=0), np.array([0.0, 1.0, 0.0])
+    for reach, inside in ((0.95, True), (1.1, False)):
+        assert bool(body.value([corner + reach * walls[0] * out])[0] < 0) == inside
 
 
 def test_a_junction_swells_by_no_more_than_the_blend_allows():

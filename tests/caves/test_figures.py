@@ -8,6 +8,7 @@ from cave_surveys import chain
 
 from geofit.caves.body import centreline_body
 from geofit.caves.clearance import clearance
+from geofit.caves.shots import ShotList
 from geofit.caves.strata import strata
 from geofit.caves.uncertainty import volume_estimate
 from geofit.data.errors import SettingsError
@@ -124,3 +125,19 @@ def test_clearance_is_negative_inside_and_takes_points():
         clearance(body, [[1, 2]])
     with pytest.raises(SettingsError, match="radius"):
         clearance(body, points, radius=-1)
+
+
+@pytest.mark.parametrize(("walls", "least"), [([0.2] * 4, 1.3), ([0.1, 0.1, 3.0, 3.0], -0.0866)])
+def test_clearance_sees_a_passage_that_is_too_thin_for_the_triangles(walls, least):
+    """A crawl off a gallery is lost between cells that suit the gallery: the clearance was the gallery's, 31 m."""
+    shots = ShotList(across=True)
+    for k in range(6):
+        shot = shots.add(str(k), str(k + 1), np.array([10.0, 0, 0]), k)
+        shots.add_walls(str(k), shot, [4.0] * 4)
+    shots.add_walls("6", shot, [4.0] * 4)
+    shots.add_walls("t", shots.add("3", "t", np.array([0, 4.0, 0]), 6), walls)
+    shots.add_walls("u", shots.add("t", "u", np.array([0, 40.0, 0]), 7), walls)
+    found = clearance(centreline_body(shots.survey("crawl")), [[-50, 35, 1.5], [80, 35, 1.5]])
+    assert found.least == pytest.approx(least, abs=0.02)
+    assert found.station[found.nearest] == "u"
+    assert np.abs(found.wall[found.nearest] - [30, 35, 1.5]).max() < 1.5

@@ -67,3 +67,20 @@ def test_surface_shots_get_no_section():
     shots.add("0", "1", np.array([5.0, 0, 0]), 0, passage=False)
     with pytest.raises(SurveyError, match="no shot along a passage"):
         sections(adjust_survey(shots.survey("surface")), radius=1.0)
+
+
+def test_stations_that_a_shot_of_no_length_ties_are_one():
+    """Compass ties surveys together by shots of length 0: walls beyond were the mean of the whole survey."""
+    shots = ShotList()
+    first = shots.add("a", "b", np.array([20.0, 0, 0]), 0)
+    tie = shots.add("b", "c", np.zeros(3), 1)
+    shots.add("c", "d", np.array([30.0, 10.0, 0]), 2)
+    shots.add("a", "e", np.array([0, 60.0, 0]), 3)
+    shots.add_walls("a", first, [3.0] * 4)
+    shots.add_walls("b", tie, [3.0, 2.0, 3.0, 3.0])
+    shots.add_walls("e", 3, [0.5] * 4)
+    found = sections(adjust_survey(shots.survey("tied")))
+    assert found.shot.tolist() == [0, 2, 3]
+    assert found.place[1].tolist() == [1, 3]
+    np.testing.assert_allclose(found.walls[1], [[3, 2, 3, 3]] * 2, atol=1e-6)
+    assert {f.station for f in found.filled} == {"d"}

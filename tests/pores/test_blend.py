@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 from brute import blobs
@@ -106,9 +108,13 @@ def test_normals_turn_by_a_milliradian_in_a_hundredth_of_a_voxel(kernel, joint):
 @pytest.mark.parametrize("construction", ["contact", "blend", "greedy"])
 def test_vertices_at_the_seam_of_two_blocks_are_equal_bit_for_bit(construction):
     volume = RockVolume(blobs(6, (40, 32, 30)), pore=True, voxel=1.0)
-    body = (
-        metaballs(volume, max_balls=40) if construction == "greedy" else pore_surface(volume, construction=construction)
-    )
+    # Most of these pores are noise a voxel wide.
+    with pytest.warns(UserWarning, match="voxels wide") if construction == "blend" else nullcontext():
+        body = (
+            metaballs(volume, max_balls=40)
+            if construction == "greedy"
+            else pore_surface(volume, construction=construction)
+        )
     rim = []
     for first in (0, 20):
         mesh = isosurface(body, Lattice(np.array([float(first), 0, 0]), 1.0, (21, 33, 31)))
@@ -116,3 +122,21 @@ def test_vertices_at_the_seam_of_two_blocks_are_equal_bit_for_bit(construction):
         rim.append(on[np.lexsort(on.T)])
     assert len(rim[0]) > 10
     assert rim[0].tobytes() == rim[1].tobytes()
+
+
+@pytest.mark.parametrize("edges", [(1e-6, 1e-6, 1e-6), (1e-6, 1e-6, 3e-6)])
+@pytest.mark.parametrize("width", [1, 2])
+def test_ducts_that_blended_balls_leave_without_triangles_are_a_warning(width, edges):
+    pore = np.zeros((20, 12, 12), bool)
+    pore[:, 1 : 1 + width, 1 : 1 + width] = True
+    with pytest.warns(UserWarning, match="100% of the pores are one or two voxels wide"):
+        body = pore_surface(RockVolume(pore, pore=True, voxel=edges), construction="blend")
+    assert [(text.code, text.severity) for text in body.messages] == [("pores.ducts-without-triangles", "warning")]
+    assert not len(body.triangulate().triangles)
+    pore[:, 4:7, 4:7] = True
+    with pytest.warns(UserWarning, match="voxels wide"):
+        body = pore_surface(RockVolume(pore, pore=True, voxel=edges), construction="blend")
+    assert body.messages[0].params["share"] == pytest.approx(width**2 / (width**2 + 9))
+    pore[:, 1 : 1 + width, 1 : 1 + width] = False
+    # Warnings are errors.
+    assert pore_surface(RockVolume(pore, pore=True, voxel=1e-6), construction="blend").messages == ()

@@ -7,6 +7,7 @@ from scipy import ndimage
 from shapes import capsules, turns
 
 from geofit.pores import RockVolume, connectivity, euler_number, surface_area
+from geofit.pores.representative import representative_volume
 
 
 @pytest.mark.parametrize("radius", [10, 17.3, 40])
@@ -90,3 +91,16 @@ def test_percolation_and_porosities():
     size = np.bincount(label.ravel())[1:]
     assert found.connected == pytest.approx((size.sum() - size.min()) / pore.size)
     assert found.percolating == (pytest.approx(size.max() / pore.size), 0.0, 0.0)
+
+
+@pytest.mark.parametrize("voxel", [(1e-6, 1e-6, 4e-6), (3e-6, 1e-6, 2e-6)])
+def test_representative_cubes_are_cubes_in_metres(voxel):
+    """Blocks of equal numbers of voxels are as long as the voxels; their edge was stated as if voxels were cubes."""
+    shape = tuple(round(48e-6 / edge) for edge in voxel)
+    pore = np.zeros(shape, bool)
+    pore[:, :, : shape[2] // 2] = True
+    found = representative_volume(RockVolume(pore, pore=True, voxel=voxel))
+    assert found.edge[-1] == pytest.approx(48e-6)
+    assert (found.count[-1], found.mean[-1]) == (1, 0.5)
+    assert found.edge[0] == pytest.approx(4 * max(voxel), rel=0.15)
+    assert found.count[0] == pytest.approx((48e-6 / found.edge[0]) ** 3, rel=0.3)

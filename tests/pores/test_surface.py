@@ -1,5 +1,7 @@
 """The rebuilt body: closed, with the volume of its voxels, smooth, bounded."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 from brute import blobs
@@ -61,7 +63,10 @@ def test_surfaces_of_packs_and_noise_are_closed(source, construction):
     pore = pack(source, 24, 1) if isinstance(source, str) else blobs(source, (26, 24, 22))
     volume = RockVolume(pore, pore=True, voxel=1e-6)
     network = pore_network(volume)
-    body = pore_surface(volume, network, construction=construction)
+    # Blended balls lose the gaps between grains of the densest pack, and all but a hundredth of the finest noise.
+    narrow = construction == "blend" and source in ("fcc", 4)
+    with pytest.warns(UserWarning, match="voxels wide") if narrow else nullcontext():
+        body = pore_surface(volume, network, construction=construction)
     mesh = body.triangulate()
     assert mesh.is_closed
     assert mesh.is_manifold
