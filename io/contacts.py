@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from geofit.data.errors import InputError
 from geofit.data.given import arguments_checked
 from geofit.data.logs import LoggedHoles
-from geofit.data.messages import Message, Untranslated, message
+from geofit.data.messages import Message, Untranslated, message, plural_message
 from geofit.data.points import PointSet
 from geofit.data.site import ImportIssue
 from geofit.io.boreholes import DEPTH_TOLERANCE, Boreholes, IntervalLog
@@ -129,7 +129,43 @@ def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Jo
                 value=rule.label,
             )
         found.append(_contacts_of(boreholes, plain, rule, journal))
+    _warn_of_two_logs(found, rule, journal)
     return PointSet.concatenate(found)
+
+
+def _warn_of_two_logs(found: Sequence[PointSet], rule: ContactRule, journal: Journal) -> None:
+    """Warn of holes that have the contact in two interval tables, at two depths."""
+    for k, later in enumerate(found):
+        for earlier in found[:k]:
+            before = {str(hole): xyz for hole, xyz in zip(earlier.hole, earlier.xyz, strict=True)}
+            apart = np.array([
+                np.linalg.norm(xyz - before[hole]) if hole in before else 0.0
+                for hole, xyz in zip(later.hole.tolist(), later.xyz, strict=True)
+            ])  # fmt: skip
+            two = np.flatnonzero(apart > DEPTH_TOLERANCE)
+            if not two.size:
+                continue
+            worst = int(np.argmax(apart))
+            journal.add(
+                "warning",
+                later.labels["file"].word(worst),
+                plural_message(
+                    "io.contact-in-two-logs",
+                    "{limit} of {code}: {count} hole has the contact in {file} too, at another depth: {hole}, "
+                    "{distance:.2f} m away; both are used",
+                    "{limit} of {code}: {count} holes have the contact in {file} too, at other depths, the most in "
+                    "{hole}, {distance:.2f} m away; both are used",
+                    limit=rule.limit,
+                    code=Untranslated(rule.label),
+                    count=len(two),
+                    file=Untranslated(earlier.labels["file"].word(0)),
+                    hole=Untranslated(later.hole[worst]),
+                    distance=float(apart[worst]),
+                ),
+                message("io.keep-one-log", "Keep one log of each hole, or give the codes of one table other names."),
+                row=int(later.row[worst]),
+                value=rule.label,
+            )
 
 
 def _warn_of_case(rule: ContactRule, codes: Sequence[str], file: str, journal: Journal) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
+from geofit.data.legible import legible
 from geofit.data.messages import EMPTY, Message, message
 from geofit.io.journal import Journal
 from geofit.io.source import Source
@@ -299,8 +300,8 @@ def _layers_inside(raw: Any, layer: str) -> tuple[str, ...]:
 
 
 def _clean(text: str) -> str:
-    """Return text without the halves of characters that a damaged file leaves, which no file can be written with."""
-    return text.encode("utf-8", "replace").decode("utf-8")
+    """Return text without the halves of characters that a damaged file, or one in GBK that states UTF-8, leaves."""
+    return legible(text)
 
 
 def _vertices(raw: Any, kind: str) -> list[tuple[float, float, float]]:

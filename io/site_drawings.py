@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Message, message
+from geofit.data.messages import Message, Untranslated, message
 from geofit.data.points import PointSet
 from geofit.data.site import Section
 from geofit.io.axes import Region, place_in
@@ -109,6 +109,7 @@ def read_sections(
     sections: list[Section] = []
     for section, source, drawing in placed_sections(reader, top, lines, region):
         sections.append(section)
+        _warn_of_far_line(section, region, reader.file, journal)
         gather(gathered, load_section(source, section, drawing, names, journal))
     for table in reader.tables(top, "sections"):
         source = reader.source(table, "[sections]", kind="sections")
@@ -172,6 +173,30 @@ def _check_line(reader: Reader, line: Floats, where: Message | str, region: Regi
             "line",
             line.tolist(),
         )
+
+
+def _warn_of_far_line(section: Section, region: Region | None, file: str, journal: Journal) -> None:
+    """Warn of a section line that lies far off the study area: all points of the section do, too."""
+    if region is None or place_in(section.line, region) != "off":
+        return
+    x, y = section.line.mean(axis=0)
+    journal.add(
+        "warning",
+        file,
+        message(
+            "io.line-far-outside",
+            "The line of section '{name}' lies far outside the study area, around x = {x:.10g}, y = {y:.10g}",
+            name=Untranslated(section.name),
+            x=x,
+            y=y,
+        ),
+        message(
+            "io.line-in-metres",
+            "Check its corners and the boundary; under line they are metres, whatever the unit of the site.",
+        ),
+        column="line",
+        value=section.name,
+    )
 
 
 def gather(gathered: dict[str, list[PointSet]], found: Mapping[str, PointSet]) -> None:

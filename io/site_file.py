@@ -36,7 +36,7 @@ from geofit.io.mapping import ColumnMapping, load_mappings
 from geofit.io.orientations import load_orientations
 from geofit.io.picks import load_picks
 from geofit.io.places import list_places
-from geofit.io.shared_holes import warn_of_shared_holes
+from geofit.io.shared_holes import warn_of_shared_holes, warn_of_twins
 from geofit.io.site_drawings import gather, read_sections
 from geofit.io.site_keys import HORIZON, SETTINGS, TOP, Reader
 from geofit.io.site_relations import read_datum, read_relations
@@ -190,6 +190,7 @@ def _built(
     gathered: dict[str, list[PointSet]] = {name: [] for name in names.names}
     boreholes = [_boreholes(reader, table, journal, region, ground) for table in reader.tables(top, "boreholes")]
     warn_of_shared_holes(boreholes, journal)
+    warn_of_twins(boreholes, journal)
     _gather_contacts(reader, gathered, boreholes, horizons, journal)
     adits = _adits(reader, top, names, journal, region, gathered)
     tell(progress, "read sections", 0.4)
@@ -216,15 +217,15 @@ def _built(
         for table in reader.tables(top, "orientations")
     ]
 
+    order, faults = read_relations(reader, top, label, list(gathered))
     points, settings = {}, {}
     stated = {horizon.name: horizon for horizon in horizons}
     for name, sets in gathered.items():
         horizon = stated.get(name) or _Horizon(name, None, {}, FitSettings())
         settings[name] = horizon.settings
         points[name] = _with_accuracy(reader, PointSet.concatenate(sets), horizon, journal)
-        steep = horizon.settings.frame in ("best-plane", "sections")
+        steep = horizon.settings.frame in ("best-plane", "sections") or name in faults
         list_places(name, points[name], journal, horizon.settings.coincidence_distance, steep=steep)
-    order, faults = read_relations(reader, top, label, list(points))
     tell(progress, "read", 1.0)
     return Site(
         name=reader.get(label, "name", str, "[site]") or path.parent.name,

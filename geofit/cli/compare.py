@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import listening, print_json, print_table, say, with_exit_code
+from geofit.cli.console import listening, print_issues, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Json, LanguageCode
+from geofit.data.messages import Message
+from geofit.data.site import ImportIssue
 
 __all__ = ["compare"]
 
@@ -31,15 +34,26 @@ def compare(
 ) -> int:
     """Compare two states of a site: what moved, and new holes against the 90 % band of the earlier state.
 
-    Exit code 1: the earlier band of some horizon was too narrow for what was found since.
+    Exit code 1: the earlier band of some horizon was too narrow for what was found since; 2: a horizon could not be
+    fitted.
     """
     from geofit.data.languages import language
     from geofit.project.comparing import compare_states, write_comparisons
     from geofit.report.gather import change_report
     from geofit.report.schema import enveloped
 
+    said: list[Message] = []
+
+    def reported(text: Message) -> None:
+        said.append(text)
+        say(text)
+
+    def listed(path: Path, issues: Sequence[ImportIssue]) -> None:
+        if any(issue.severity != "note" for issue in issues):
+            print_issues(issues, f"geofit info {path}")
+
     with listening() as progress:
-        found = compare_states(old, new, tuple(horizon or ()), epsilon, progress)
+        found = compare_states(old, new, tuple(horizon or ()), epsilon, progress, reported=reported, listed=listed)
         files = () if out is None else write_comparisons(found, out, language(lang.value))
     if as_json:
         print_json(enveloped("comparison", {"horizons": {name: change_report(one) for name, one in found.items()}}))
@@ -63,4 +77,6 @@ def compare(
             say(note)
     if files:
         say(f"Maps, grids and tables: {out}")
+    if any(text.severity == "error" for text in said):
+        return 2
     return 1 if any(one.test.too_narrow for one in found.values()) else 0

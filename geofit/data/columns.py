@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from contextlib import suppress
 from typing import Any
 
@@ -15,6 +16,8 @@ __all__ = ["LARGEST", "column", "finite_places", "measurable_places", "places", 
 
 #: Largest coordinate, metres: beyond it a double has not the digits that a surface is measured by.
 LARGEST = 1e9
+#: Metres that numbers of 32 bits may move a place by without a warning.
+UNNOTICED = 0.01
 
 
 def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
@@ -27,9 +30,15 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
     ------
     PointsError
         If the values are not numbers or no (n, 3) array.
+
+    Warns
+    -----
+    UserWarning
+        If they are numbers of 32 or 16 bits, which round map coordinates by more than :data:`UNNOTICED`.
     """
     if isinstance(given, np.ndarray) and _fixed(given, np.float64) and given.ndim == 2 and given.shape[1] == 3:
         return given
+    types = [getattr(given, "dtype", np.float64)]
     if isinstance(given, np.ma.MaskedArray):
         # A masked value is missing, whatever number it hides.
         given = np.ma.filled(given.astype(np.float64), np.nan)
@@ -37,6 +46,7 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
         named = {str(one).casefold(): one for one in _names(given)}
         if named.keys() >= set("xyz"):
             table: Any = given
+            types = [getattr(table[named[axis]], "dtype", np.float64) for axis in "xyz"]
             given = np.column_stack([np.asarray(table[named[axis]], dtype=np.float64) for axis in "xyz"])
         if np.iscomplexobj(given):
             raise TypeError("they are complex")
@@ -61,7 +71,24 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
                 shape=xyz.shape,
             )
         )
+    _warn_of_rounding(name, xyz, types)
     return xyz
+
+
+def _warn_of_rounding(name: str, xyz: NDArray[np.float64], types: list[Any]) -> None:
+    """Warn a caller in Python of coordinates that came as numbers of 32 or 16 bits and are that much off."""
+    steps = [
+        float(np.spacing(np.abs(part[np.isfinite(part)]).max(initial=0.0).astype(kind)))
+        for part, kind in zip(np.array_split(xyz, len(types), axis=1), types, strict=True)
+        if isinstance(kind, np.dtype) and kind.kind == "f" and kind.itemsize < np.dtype(np.float64).itemsize
+    ]
+    if max(steps, default=0.0) > 2 * UNNOTICED:
+        warnings.warn(
+            f"{name}: single precision (float32) rounds coordinates of this size to {max(steps):.3g} m. Read and keep "
+            "them as float64, or subtract a constant before they become float32.",
+            UserWarning,
+            stacklevel=4,
+        )
 
 
 def _names(given: Any) -> list[Any]:

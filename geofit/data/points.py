@@ -73,7 +73,8 @@ class PointSet:
     Parameters
     ----------
     xyz : (n, 3) array_like
-        Easting, northing, elevation in metres.
+        Easting, northing, elevation in metres. Numbers of 32 bits that round them by centimetres cause a
+        ``UserWarning``.
     kind : str or (n,) array_like of str
         Source kind of each point, see :data:`KINDS`.
     hole, section : str or (n,) array_like of str

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from geofit.data.errors import InputError
+import numpy as np
+
+from geofit.data.errors import InputError, SettingsError
 from geofit.data.files import file_stems, folder_for, replacing
 from geofit.data.languages import EN, Language, translate
-from geofit.data.messages import message
+from geofit.data.messages import Message, Untranslated, message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
+from geofit.data.site import ImportIssue
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.io.project import is_project
 from geofit.project.building import Given, given_of, make
@@ -25,6 +28,8 @@ from geofit.site.states import Comparison, compare_fits
 __all__ = ["compare_states", "made_comparison", "state_surfaces", "write_comparisons"]
 
 _LOG = logging.getLogger(__name__)
+
+Listed = Callable[[Path, Sequence[ImportIssue]], object]
 
 
 def made_comparison(
@@ -40,6 +45,21 @@ def made_comparison(
     before = surface if surface is not None and surface.model is not None else make(pair[0], given, progress)
     known = given.site.horizons[pair[0].horizon]
     return pair, compare_fits(before, after, known, found, progress=progress)
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """The surfaces of a state: by name each with its points and its horizon, of which it may be a fault block.
+
+    ``points`` are those too that the fit left out; ``horizons`` has all of each horizon. ``failures`` gives by horizon
+    why it could not be fitted.
+    """
+
+    path: Path
+    surfaces: Mapping[str, tuple[HorizonFit, PointSet]]
+    horizon: Mapping[str, str]
+    horizons: Mapping[str, PointSet]
+    failures: Mapping[str, Message]
 
 
 def state_surfaces(
@@ -64,27 +84,36 @@ def state_surfaces(
     Raises
     ------
     InputError
-        If a file cannot be used.
+        If a file cannot be used, or a horizon of a site file cannot be fitted.
     GeofitError
-        If a horizon cannot be fitted.
+        If a horizon of a project cannot be fitted.
     """
+    state = _state(path, horizons, progress, lambda *_: None)
+    for reason in state.failures.values():
+        raise InputError(reason, file=str(path))
+    return dict(state.surfaces)
+
+
+def _state(path: Path, horizons: Sequence[str], progress: Progress | None, listed: Listed) -> _State:
     if not is_project(path):
         from geofit.io.site_file import read_site
         from geofit.site.fit_site import fit_site
 
         site = read_site(path)
+        listed(path, site.issues)
         fits = fit_site(site, [name for name in site.horizons if not horizons or name in horizons], None, progress)
-        for reason in fits.failures.values():
-            raise InputError(reason, file=str(path))
-        return {name: (surface, site.horizons.get(name, surface.points)) for name, surface in fits.surfaces.items()}
+        surfaces = {name: (surface, site.horizons.get(name, surface.points)) for name, surface in fits.surfaces.items()}
+        return _State(path, surfaces, fits.horizon, site.horizons, fits.failures)
     opened = read_project(path)
     for text in opened.lost:
         _LOG.warning(text)
     state, site = opened.state, opened.state.shaped(opened.site)
+    listed(path, site.issues)
     points = site_with_blocks(site, state.parts).horizons
+    horizon = {name: state.parts[name].horizon if name in state.parts else name for name in state.order}
     found = {}
     for name in state.order:
-        if horizons and name not in horizons:
+        if horizons and name not in horizons and horizon[name] not in horizons:
             continue
         excluded = tuple(sorted(state.excluded.get(name, ())))
         given = fingerprint(points[name], state.as_read(site))
@@ -93,13 +122,20 @@ def state_surfaces(
         # A surface of other data cannot be made again; its settings and rows can be used.
         provenance = fitted if fitted is not None and fitted.given == given else present
         found[name] = (make(provenance, given_of(site, provenance), progress), points[name])
-    return found
+    return _State(path, found, horizon, site.horizons, {})
 
 
 def compare_states(
-    old: Path, new: Path, horizons: Sequence[str] = (), epsilon: float | None = None, progress: Progress | None = None
+    old: Path,
+    new: Path,
+    horizons: Sequence[str] = (),
+    epsilon: float | None = None,
+    progress: Progress | None = None,
+    *,
+    reported: Callable[[Message], object] = _LOG.warning,
+    listed: Listed = lambda *_: None,
 ) -> dict[str, Comparison]:
-    """Compare the horizons that two states of a site have in common.
+    """Compare the horizons that two states of a site have in common; of faulted ones the blocks on the same side.
 
     Parameters
     ----------
@@ -111,36 +147,115 @@ def compare_states(
         What counts as moved, metres; by default the control error of the later fit.
     progress : callable, optional
         ``progress(stage, fraction)``; False stops.
+    reported : callable, optional
+        Gets a message for what is not compared, an error where a horizon could not be fitted, and for each block that
+        has another name in the earlier state.
+    listed : callable, optional
+        Called as ``listed(path, issues)`` with what the readers of each state found.
 
     Raises
     ------
     InputError
-        If a file cannot be used, or the states have no horizon in common.
+        If a file cannot be used, or the states have no horizon in common that can be fitted.
     GeofitError
-        If a horizon cannot be fitted.
+        If a horizon of a project cannot be fitted.
     """
     tell(progress, "fit the earlier state", 0.0)
-    before = state_surfaces(old, horizons)
+    before = _state(old, horizons, progress, listed)
     tell(progress, "fit the later state", 0.4)
-    after = state_surfaces(new, horizons)
-    common = [name for name in before if name in after]
-    if not common:
+    after = _state(new, horizons, progress, listed)
+    pairs = _pairs(before, after)
+    if not pairs:
+        for state in (before, after):
+            for reason in state.failures.values():
+                raise InputError(reason, file=str(state.path))
         raise InputError(
             message("project.states-without-common-horizon", "The two states have no horizon in common"),
             message(
                 "project.horizons-of-states", "The earlier state has {old}; the later one has {new}.",
-                old=", ".join(before) or "-", new=", ".join(after) or "-",
+                old=", ".join(before.horizons) or "-", new=", ".join(after.horizons) or "-",
             ),
             file=str(new),
         )  # fmt: skip
+    for text in _not_compared(before, after, pairs):
+        reported(text)
     found = {}
-    for k, name in enumerate(common):
-        tell(progress, "compare", 0.8 + 0.2 * k / len(common))
-        (surface, known), (later, points) = before[name], after[name]
+    for k, (name, earlier, later_name) in enumerate(pairs):
+        tell(progress, "compare", 0.8 + 0.2 * k / len(pairs))
+        (surface, known), (later, points) = before.surfaces[earlier], after.surfaces[later_name]
+        if earlier != later_name:
+            reported(
+                message(
+                    "project.block-compared",
+                    "{later} is compared with {earlier} of the earlier state: they lie on the same side",
+                    later=later_name,
+                    earlier=earlier,
+                )
+            )
         if epsilon is not None:
             later = later.with_(settings=replace(later.settings, epsilon=epsilon))
-        found[name] = compare_fits(surface, later, known, points)
+        # A point that the fault puts into another block now is known all the same.
+        known = before.horizons.get(before.horizon[earlier], known)
+        try:
+            one = compare_fits(surface, later, known, points)
+        except SettingsError as reason:
+            # A vertical fault covers nothing of the plan: the others are compared all the same.
+            if len(pairs) == 1:
+                raise
+            reported(
+                message(
+                    "project.horizon-not-compared", "{name} is not compared: {reason}", name=name, reason=reason.message
+                ).with_severity("warning")
+            )
+            continue
+        found[name] = replace(one, change=replace(one.change, name=name), test=replace(one.test, name=name))
     return found
+
+
+def _pairs(before: _State, after: _State) -> list[tuple[str, str, str]]:
+    """Return what is compared: a name, the earlier surface and the later one.
+
+    Blocks are named by their numbers of points, which new holes change: each is compared with the block of the other
+    state that reaches most of its points.
+    """
+    pairs = []
+    for horizon in dict.fromkeys(before.horizon[name] for name in before.surfaces):
+        first, second = ([n for n in one.surfaces if one.horizon[n] == horizon] for one in (before, after))
+        split, other, blocks = (before, after, first) if len(first) > len(second) else (after, before, second)
+        whole = second if split is before else first
+        if len(blocks) == 1 == len(whole):
+            pairs.append((blocks[0], whole[0], blocks[0]) if split is after else (whole[0], blocks[0], whole[0]))
+            continue
+        for name in blocks if whole else ():
+            xy = split.surfaces[name][0].points.xyz[:, :2].T
+            reach = {one: float(np.isfinite(other.surfaces[one][0].elevation(*xy)).mean()) for one in whole}
+            nearest = max(whole, key=lambda one: reach[one])
+            if reach[nearest] > 0:
+                pairs.append((name, nearest, name) if split is after else (name, name, nearest))
+    return pairs
+
+
+def _not_compared(before: _State, after: _State, pairs: Sequence[tuple[str, str, str]]) -> Iterator[Message]:
+    """Yield what one state alone has, and what could not be fitted."""
+    for state in (before, after):
+        for name, reason in state.failures.items():
+            yield message(
+                "project.state-not-fitted",
+                "{file}: {name} could not be fitted: {reason}",
+                file=Untranslated(state.path.name),
+                name=name,
+                reason=reason,
+            ).with_severity("error")
+    for state, other, place in ((before, after, 1), (after, before, 2)):
+        compared = {pair[place] for pair in pairs}
+        alone = [name for name in state.surfaces if name not in compared and state.horizon[name] not in other.failures]
+        if alone:
+            yield message(
+                "project.horizons-of-one-state",
+                "Not compared, for {file} alone has them: {names}",
+                file=Untranslated(str(state.path)),
+                names=", ".join(alone),
+            ).with_severity("warning")
 
 
 def write_comparisons(found: dict[str, Comparison], out: Path, t: Language = EN) -> tuple[Path, ...]:

@@ -17,7 +17,6 @@ from geofit.data.title_block import TitleBlock
 
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
-    from geofit.bodies.drilling import SuggestedHole
     from geofit.bodies.simulate import BodyVolumes
     from geofit.bodies.strata import StratumVolume
     from geofit.cad.solid_read_back import SolidReadBack
@@ -97,7 +96,6 @@ def _findings(
 
     tell(progress, "strata", 0.0)
     strata: tuple[StratumVolume, ...] = ()
-    none: tuple[SuggestedHole, ...] = ()
     if horizons:
         over = reaching(body, horizons)
         if over:
@@ -110,7 +108,7 @@ def _findings(
     )
     tell(progress, "suggested boreholes", 0.7)
     suggested = tried(
-        lambda: suggest_body_holes(body, SUGGESTED), none, message("project.task-suggested", "where to drill next")
+        lambda: suggest_body_holes(body, SUGGESTED), None, message("project.task-suggested", "where to drill next")
     )
     tell(progress, "pictures", 0.8)
     images, no_space = draw_body(body, t)

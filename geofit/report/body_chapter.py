@@ -54,7 +54,7 @@ _METHODS = {
 
 @dataclass(frozen=True, eq=False)
 class BodyFindings:
-    """Everything that a chapter says of a body; None or empty: not examined, ``missing`` states why.
+    """Everything that a chapter says of a body; None: not examined, ``missing`` states why.
 
     ``pictures`` are what was drawn: "view", "section-0" and so on. ``stale`` lists what has changed since the fit.
     """
@@ -64,7 +64,7 @@ class BodyFindings:
     read_back: SolidReadBack | None = None
     strata: tuple[StratumVolume, ...] = ()
     left_out: CrossValidation | None = None
-    suggested: tuple[SuggestedHole, ...] = ()
+    suggested: tuple[SuggestedHole, ...] | None = None
     pictures: tuple[str, ...] = ()
     missing: tuple[Message, ...] = field(default=())
     stale: tuple[StaleCause, ...] = ()
@@ -267,7 +267,7 @@ def _worst_holes(holes: Sequence[object], t: Language) -> list[Block]:
 def _holes(found: BodyFindings, t: Language) -> list[Block]:
     blocks: list[Block] = [Heading(t("Suggested boreholes"))]
     if not found.suggested:
-        return [*blocks, Paragraph(t("No holes are suggested."))]
+        return [*blocks, Paragraph(t("Not examined.") if found.suggested is None else t("No holes are suggested."))]
     head = (
         Column(t("No."), "number"),
         Column(t("x, m"), "number"),

@@ -19,7 +19,7 @@ from geofit.data.accuracy import Check, Seam
 from geofit.data.messages import EMPTY, Message
 from geofit.data.points import PointSet
 from geofit.data.prediction import LeftOut, PredictionResult
-from geofit.data.site import ImportIssue, Section, Site
+from geofit.data.site import ImportIssue, Section, Site, TableCount
 from geofit.report.accuracy_report import (
     AccuracyReport,
     ChangeReport,
@@ -396,14 +396,18 @@ def _cut(cut: FaultCut) -> FaultCutLine:
 
 def inputs_of(site: Site) -> tuple[InputFile, ...]:
     """Return the files of a site with their hashes, and how many of their rows were used."""
-    counts = {c.file: c for c in site.counts}
-    lines = []
-    for file in dict.fromkeys([*site.inputs, *counts]):
-        c = counts.get(file)
-        lines.append(
-            InputFile(file, site.inputs.get(file, ""), c and c.read, c and c.used, c and c.listed)  # type: ignore[arg-type]
-        )
-    return tuple(lines)
+    counts: dict[str, list[TableCount]] = {}
+    for count in site.counts:
+        counts.setdefault(count.file, []).append(count)
+
+    def rows(file: str, what: str) -> int | None:
+        # A drawing that holds adits and their contacts is read, and its rows are counted, once for each.
+        return sum(getattr(one, what) for one in counts[file]) if file in counts else None
+
+    return tuple(
+        InputFile(file, site.inputs.get(file, ""), *(rows(file, what) for what in ("read", "used", "listed")))
+        for file in dict.fromkeys([*site.inputs, *counts])
+    )
 
 
 @lru_cache(maxsize=1)

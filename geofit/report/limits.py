@@ -38,7 +38,7 @@ def away_from_data(report: AccuracyReport, t: Language) -> list[Block]:
 
 def _expected(off: PredictionReport) -> tuple[str, ...]:
     bands = [None if sd is None else HALF * sd for sd in (off.sd_mean, off.sd_max)]
-    inside = off.left_out[0].inside if off.left_out else None
+    inside = next((one.inside for one in off.left_out if one.scheme == "hole"), None)
     return (
         *("–" if band is None else f"± {digits.metres(band)}" for band in bands),
         digits.share(inside),
@@ -57,16 +57,18 @@ def limits_of_use(report: AccuracyReport, stale: Sequence[str], t: Language) -> 
             "90 % band, never σ."
         ),
     ]
-    wide = [h for h in report.horizons if (error := _left_out(h)) is not None and error > h.epsilon]
-    if wide:
-        names = _names([t("{name} ({error})", name=h.name, error=digits.length(_left_out(h))) for h in wide], t)
-        sentences.append(
-            t(
-                "Between boreholes the typical error exceeds the control error for: {names}.",
-                names=names,
-            )
-        )
-    unknown = [h.name for h in report.horizons if _left_out(h) is None]
+    errors = [(h, *_left_out(h)) for h in report.horizons]
+    wide: dict[bool, list[str]] = {True: [], False: []}
+    for h, scheme, error in errors:
+        if error is not None and error > h.epsilon:
+            wide[scheme == "hole"].append(t("{name} ({error})", name=h.name, error=digits.length(error)))
+    if wide[True]:
+        names = _names(wide[True], t)
+        sentences.append(t("Between boreholes the typical error exceeds the control error for: {names}.", names=names))
+    if wide[False]:
+        names = _names(wide[False], t)
+        sentences.append(t("Away from the data the typical error exceeds the control error for: {names}.", names=names))
+    unknown = [h.name for h, _, error in errors if error is None]
     if unknown:
         sentences.append(t("The error away from the data is unknown for: {names}.", names=_names(unknown, t)))
     if any(check.name == "above ground" and check.value for h in report.horizons for check in h.checks):
@@ -86,9 +88,11 @@ def limits_of_use(report: AccuracyReport, stale: Sequence[str], t: Language) -> 
     return [Heading(t("Limits of use")), *(Paragraph(f"{i}. {text}") for i, text in enumerate(sentences, 1))]
 
 
-def _left_out(horizon: HorizonReport) -> float | None:
-    off = horizon.prediction
-    return off.left_out[0].rms if off is not None and off.left_out else None
+def _left_out(horizon: HorizonReport) -> tuple[str, float | None]:
+    """Return what was left out, and the error there (m): holes, or, without any, the worst of sections and blocks."""
+    schemes = () if horizon.prediction is None else horizon.prediction.left_out
+    chosen = [one for one in schemes if one.scheme == "hole"] or sorted(schemes, key=lambda one: -one.rms)
+    return (chosen[0].scheme, chosen[0].rms) if chosen else ("", None)
 
 
 def _names(names: list[str], t: Language) -> str:

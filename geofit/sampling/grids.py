@@ -81,7 +81,7 @@ def _grid(box: tuple[Floats, Floats], cell: float | None, value: Callable[[Float
         raise SettingsError(
             message(
                 "sampling.horizons-not-overlapping",
-                "The horizons do not overlap in plan; there is no thickness between them.",
+                "The surfaces do not overlap in plan; nothing can be measured between them.",
             )
         )
     step = interval_for(0.0, float((high - low).max()) * 20 / CELLS) if cell is None else cell

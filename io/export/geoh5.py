@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
+from geofit.data.legible import legible_keys
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh
@@ -83,12 +84,12 @@ def write_geoh5(
     whole = BytesIO()
     with h5py.File(whole, "w", track_order=False) as file:
         model = _Model(file.create_group("GEOSCIENCE"), h5py.string_dtype())
-        for name, mesh in meshes.items():
+        for name, mesh in legible_keys(meshes).items():
             item = model.add(name, SURFACE, "Surface", mesh.xyz)
             item["Cells"] = mesh.triangles.astype("<i4")
             model.values(item, "elevation", "Vertex", mesh.xyz[:, 2])
             model.values(item, "patch", "Cell", mesh.patch.astype("<i4"))
-        for name, (data, deviation) in (points or {}).items():
+        for name, (data, deviation) in legible_keys(points or {}).items():
             item = model.add(f"{name} points", POINTS, "Points", data.xyz)
             model.values(item, "deviation", "Vertex", np.asarray(deviation, float))
     with replacing(path) as part:
@@ -114,7 +115,7 @@ def write_geoh5_blocks(blocks: Mapping[str, BlockModel], path: str | PathLike[st
     whole = BytesIO()
     with h5py.File(whole, "w", track_order=False) as file:
         model = _Model(file.create_group("GEOSCIENCE"), h5py.string_dtype())
-        for name, body in blocks.items():
+        for name, body in legible_keys(blocks).items():
             item = model.blocks(name, body.centres[0] - body.spacing / 2, body.spacing, body.shape)
             for word, values in (("field", body.value), ("probability", body.probability)):
                 # Cells of the format: z runs fastest, then the first axis, then the second.

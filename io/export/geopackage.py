@@ -11,6 +11,7 @@ import numpy as np
 
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
+from geofit.data.legible import legible_keys
 from geofit.data.messages import message
 from geofit.io.extra import need
 from geofit.sampling.contours import ContourLine
@@ -42,7 +43,7 @@ def write_contours_gpkg(
     pyogrio = need("pyogrio", "gis", message("io.package-missing-for-format", "Writing {format}", format="GeoPackage"))
     import shapely
 
-    rows = [(name, contour) for name, lines in contours.items() for contour in lines]
+    rows = [(name, contour) for name, lines in legible_keys(contours).items() for contour in lines]
     if not rows:
         raise InputError(
             message("io.no-contour", "There is no contour to write"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import uuid
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,7 @@ import numpy as np
 from geofit import __version__
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
+from geofit.data.legible import legible, legible_keys
 from geofit.data.messages import message
 from geofit.data.site import Hole
 from geofit.fitting.horizon_fit import HorizonFit
@@ -92,11 +94,11 @@ def write_ifc(
             message("data.give-a-horizon", "Give at least one horizon."),
             file=str(path),
         )
-    model = _Model(ifcopenshell, site, crs)
-    for name, surface in surfaces.items():
+    model = _Model(ifcopenshell, legible(site), crs)
+    for name, surface in legible_keys(surfaces).items():
         model.horizon(name, surface, tolerance)
-    for name, body in bodies.items():
-        model.body(name, body, void=name in voids)
+    for name, given in legible_keys({given: given for given in bodies}).items():
+        model.body(name, bodies[given], void=given in voids)
     for hole in holes:
         model.hole(hole)
     model.close()
@@ -109,6 +111,7 @@ class _Model:
 
     def __init__(self, ifcopenshell: Any, site: str, crs: str) -> None:
         self._compress = ifcopenshell.guid.compress
+        self._named: Counter[str] = Counter()
         self.file = ifcopenshell.file(schema="IFC4X3_ADD2")
         header = self.file.header.file_name
         header.name, header.time_stamp = "horizons.ifc", TIMESTAMP
@@ -139,7 +142,11 @@ class _Model:
         self._parts: list[Any] = []
 
     def _id(self, kind: str, name: str) -> str:
-        return str(self._compress(uuid.uuid5(NAMESPACE, f"{kind}/{name}").hex))
+        # Holes of two campaigns may have one name; of two things with one identifier, programs keep one.
+        key = f"{kind}/{name}"
+        self._named[key] += 1
+        turn = self._named[key]
+        return str(self._compress(uuid.uuid5(NAMESPACE, key if turn == 1 else f"{key}/{turn}").hex))
 
     def _axes(self, place: Sequence[float]) -> Any:
         return self.file.createIfcAxis2Placement3D(self.file.createIfcCartesianPoint([float(c) for c in place]))
@@ -224,14 +231,14 @@ class _Model:
         return self.file.createIfcRationalBSplineSurfaceWithKnots(*arguments, patch.weights.tolist())
 
     def hole(self, hole: Hole) -> None:
-        add, start = self.file, hole.xyz[0]
+        add, start, name = self.file, hole.xyz[0], legible(hole.name)
         line = add.createIfcPolyline([add.createIfcCartesianPoint(p) for p in (hole.xyz - start).tolist()])
         axis = add.createIfcShapeRepresentation(self._axis, "Axis", "Curve3D", [line])
         self._parts.append(
             add.createIfcBorehole(
-                self._id(hole.kind, hole.name),
+                self._id(hole.kind, name),
                 None,
-                hole.name,
+                name,
                 ObjectType=hole.kind,
                 ObjectPlacement=self._placed(start.tolist()),
                 Representation=add.createIfcProductDefinitionShape(None, None, [axis]),

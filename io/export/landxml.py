@@ -12,6 +12,7 @@ import numpy as np
 from geofit import __version__
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
+from geofit.data.legible import legible_keys
 from geofit.data.messages import message
 from geofit.geometry.mesh import Mesh
 
@@ -36,7 +37,7 @@ def write_landxml(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> None
         f'<Application name="geofit" version="{__version__}"/>',
         "<Surfaces>",
     ]
-    for name, mesh in meshes.items():
+    for name, mesh in legible_keys(meshes).items():
         xyz, corners = mesh.xyz, mesh.points[mesh.triangles, :2]
         (ax, ay), (bx, by) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
         area = ax * by - ay * bx

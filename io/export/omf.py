@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
+from geofit.data.legible import legible_keys
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh
@@ -71,7 +72,7 @@ def write_omf(
         )
     model = _Model()
     elements = []
-    for k, (name, mesh) in enumerate(meshes.items()):
+    for k, (name, mesh) in enumerate(legible_keys(meshes).items()):
         shape = {
             "vertices": model.array(f"{name}/vertices", "Vector3Array", mesh.points),
             "triangles": model.array(f"{name}/triangles", "Int3Array", mesh.triangles),
@@ -81,7 +82,7 @@ def write_omf(
             model.values(name, "patch", "faces", mesh.patch.astype(np.float64)),
         ]
         elements.append(model.element(name, "Surface", "surface", k, mesh.origin, shape, data))
-    for k, (name, (known, deviation)) in enumerate((points or {}).items()):
+    for k, (name, (known, deviation)) in enumerate(legible_keys(points or {}).items()):
         title, origin = f"{name} points", np.round(known.xyz.min(axis=0), -2) if len(known) else np.zeros(3)
         shape = {"vertices": model.array(f"{title}/vertices", "Vector3Array", known.xyz - origin)}
         data = [model.values(title, "deviation", "vertices", np.asarray(deviation, float))]
@@ -101,7 +102,7 @@ def write_omf_blocks(blocks: Mapping[str, BlockModel], path: str | PathLike[str]
     """
     model = _Model()
     elements = []
-    for k, (name, body) in enumerate(blocks.items()):
+    for k, (name, body) in enumerate(legible_keys(blocks).items()):
         corner = body.centres[0] - body.spacing / 2
         # The last axis runs fastest in the cells, as in the block model.
         tensors = {f"tensor_{axis}": [body.spacing] * count for axis, count in zip("uvw", body.shape, strict=True)}

@@ -8,6 +8,7 @@ from os import PathLike
 
 from geofit.data.files import replacing, spreadsheet_cell
 from geofit.data.given import arguments_checked
+from geofit.data.legible import legible_keys
 from geofit.sampling.cut import CutLine
 
 __all__ = ["HEADER", "write_section_csv"]
@@ -42,7 +43,7 @@ def write_section_csv(cuts: Mapping[str, Sequence[CutLine]], path: str | PathLik
     with replacing(path) as part, part.open("w", encoding="utf-8-sig", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(HEADER)
-        for name, lines in ((spreadsheet_cell(name), lines) for name, lines in cuts.items()):
+        for name, lines in ((spreadsheet_cell(name), lines) for name, lines in legible_keys(cuts).items()):
             for number, line in enumerate(lines, 1):
                 for distance, (x, y, z) in zip(line.distance.tolist(), line.xyz.tolist(), strict=True):
                     writer.writerow((name, number, *(f"{value:.6f}" for value in (distance, z, x, y))))

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
+from geofit.data.legible import legible_keys
 from geofit.data.messages import message
 from geofit.geometry.mesh import Mesh
 
@@ -39,8 +40,9 @@ FLOAT, UINT, VERTICES, INDICES, TRIANGLES = 5126, 5125, 34962, 34963, 4
 
 def write_obj(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> None:
     """Write Wavefront OBJ: an object a horizon, coordinates to 1e-6 m, of small bodies finer, z upwards."""
+    meshes = _given(meshes, path)
     lines, first = [f"# {COORDINATES}, z upwards"], 1
-    digits = max(7 - _magnitude(_given(meshes, path)), 6)
+    digits = max(7 - _magnitude(meshes), 6)
     for name, mesh in meshes.items():
         lines.append(f"o {_word(name)}")
         lines += [f"v {x:.{digits}f} {y:.{digits}f} {z:.{digits}f}" for x, y, z in mesh.xyz.tolist()]
@@ -109,7 +111,8 @@ def write_glb(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> Floats:
 
     glTF has y upwards: x east, y up, z south.
     """
-    origin = common_origin(_given(meshes, path))
+    meshes = _given(meshes, path)
+    origin = common_origin(meshes)
     views: list[dict[str, int]] = []
     accessors: list[dict[str, Any]] = []
     scene: dict[str, Any] = {"meshes": [], "materials": [], "nodes": []}
@@ -216,7 +219,7 @@ def _given(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> Mapping[str
             message("data.give-a-horizon", "Give at least one horizon."),
             file=str(path),
         )
-    return meshes
+    return legible_keys(meshes)
 
 
 def _word(name: str) -> str:

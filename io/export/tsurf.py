@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from os import PathLike
 
 from geofit.data.files import replacing
+from geofit.data.legible import legible_keys
 from geofit.geometry.mesh import Mesh
 
 __all__ = ["write_tsurf"]
@@ -15,7 +16,7 @@ __all__ = ["write_tsurf"]
 def write_tsurf(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> None:
     """Write one TSurf object a horizon, coordinates to 1e-6 m."""
     lines: list[str] = []
-    for name, mesh in meshes.items():
+    for name, mesh in legible_keys(meshes).items():
         title = re.sub(r"[{}\s\x00-\x1f]+", " ", name).strip()
         lines += [
             "GOCAD TSurf 1",

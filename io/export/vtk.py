@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.files import file_stems, folder_for, replacing
+from geofit.data.legible import legible_keys
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh
@@ -112,9 +113,10 @@ def write_vtm(
         '<VTKFile type="vtkMultiBlockDataSet" version="1.0" byte_order="LittleEndian">',
         "<vtkMultiBlockDataSet>",
     ]
+    meshes, points = legible_keys(meshes), legible_keys(points or {})
     stems = file_stems(meshes)
     for k, (name, mesh) in enumerate(meshes.items()):
-        data, deviation = (points or {}).get(name, (None, None))
+        data, deviation = points.get(name, (None, None))
         write_vtp(mesh, folder / f"{stems[name]}.vtp", data, deviation)
         file = quoteattr(f"{folder.name}/{stems[name]}.vtp")
         lines.append(f'<DataSet index="{k}" name={quoteattr(_plain(name))} file={file}/>')

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, runtime_checkable
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.files import file_stems, folder_for
 from geofit.data.given import SURFACES, arguments_checked, require_kind
-from geofit.data.legible import legible
+from geofit.data.legible import legible, legible_keys
 from geofit.data.messages import Message, Untranslated, message
-from geofit.io.tables import unique_names
 from geofit.sampling.contours import contours
 from geofit.sampling.grids import deviation_grid, elevation_grid, thickness_grid
 from geofit.surfaces.protocol import Surface
@@ -209,14 +208,12 @@ def write_surface(
                 format=to,
             )
         )
-    names = [legible(name) for name in given]
-    if names != list(given):
-        given = dict(zip(unique_names(names), given.values(), strict=True))
+    given = legible_keys(given)
     if chosen.takes in ("surfaces", "site"):
         need_patches(given, to, out)
     options = _Options(
         tolerance=tolerance, unit=unit, origin=origin, crs=crs, interval=interval, cell=cell, value=value,
-        points={legible(name): one for name, one in (points or {}).items()}, holes=holes, site=legible(site),
+        points=legible_keys(points or {}), holes=holes, site=legible(site),
         ground=ground,
     )  # fmt: skip
     folder_for(out.parent)

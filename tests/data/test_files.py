@@ -6,13 +6,15 @@ import os
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from refusals import refused
 
 from geofit.data.errors import InputError
 from geofit.data.files import is_file, replacing, spreadsheet_cell
-from geofit.data.legible import legible
+from geofit.data.legible import legible, legible_keys
 from geofit.data.messages import message
+from geofit.data.points import PointSet
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="limits of files are those of Linux and macOS")
 
@@ -102,6 +104,22 @@ def test_a_pipe_or_a_device_is_not_replaced(tmp_path):
 def test_names_in_gbk_are_legible():
     assert legible(os.fsdecode("强风化.csv".encode("gbk"))) == "强风化.csv"
     legible(os.fsdecode(b"\xff\xfe\x80")).encode()
+
+
+@pytest.mark.parametrize("names", [("ZK\ud800", "ZK\ud801"), (os.fsdecode(b"ZK\xff"), os.fsdecode(b"ZK\xfe"))])
+def test_names_that_differ_stay_different_when_they_are_made_legible(names):
+    """Each half of a character had become the same mark, and two holes one."""
+    assert len({legible(name) for name in names}) == 2
+    holes = PointSet(np.zeros((2, 3)), hole=list(names)).hole.tolist()
+    assert len(set(holes)) == 2
+    "".join(holes).encode()
+
+
+def test_a_legible_key_replaces_no_other():
+    same = os.fsdecode("钻孔".encode("gbk"))
+    assert legible_keys({same: 1, "钻孔": 2, "钻孔 (2)": 3}) == {"钻孔 (3)": 1, "钻孔": 2, "钻孔 (2)": 3}
+    plain = {"钻孔": 1, "ZK1": 2}
+    assert legible_keys(plain) is plain
 
 
 @pytest.mark.parametrize("start", ["=", "+", "-", "@", "\t", "\r"])

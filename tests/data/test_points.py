@@ -260,3 +260,31 @@ def test_metres_are_not_taken_for_degrees(xyz):
 def test_a_fit_refuses_degrees_and_names_the_remedy():
     with pytest.raises(PointsError, match=r"look like longitude and latitude .*--crs EPSG"):
         geofit.fit_horizon(PointSet(geographic()))
+
+
+@pytest.mark.parametrize(
+    ("kind", "origin"),
+    [
+        (np.float32, (500_000.4, 3_100_000.7, 0.0)),
+        (">f4", (500_000.4, 3_100_000.7, 0.0)),
+        (np.float16, (500.4, 310, 0)),
+    ],
+)
+def test_coordinates_that_single_precision_rounds_by_centimetres_are_warned_of(kind, origin):
+    """They had lost up to 0.12 m at a northing of 3,100,000 m without a word."""
+    places = (np.array(XYZ) + origin).astype(kind)
+    with pytest.warns(UserWarning, match="single precision"):
+        PointSet(places)
+    with pytest.warns(UserWarning, match="contacts: single precision"):
+        geofit.BodyData(places)
+
+
+def test_columns_of_a_table_in_single_precision_are_warned_of():
+    table = np.zeros(3, [("x", "f4"), ("y", "f8"), ("z", "f4")])
+    table["x"] = [500_000.37, 500_100.81, 500_200.13]
+    with pytest.warns(UserWarning, match=r"to 0\.0312 m"):
+        PointSet(table)
+
+
+def test_single_precision_near_the_origin_is_no_reason_for_a_warning():
+    assert PointSet(np.array(XYZ, np.float32) + np.float32(1000.3)).xyz.dtype == np.float64

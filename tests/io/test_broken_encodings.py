@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from importlib import import_module
 
+import ezdxf
 import numpy as np
 import pytest
 
@@ -126,3 +128,56 @@ def test_every_format_can_be_written_under_broken_names(form, broken, tmp_path):
 def test_a_report_can_be_written_under_broken_names(broken, tmp_path):
     written = geofit.write_report(broken[0], tmp_path, forms=("html", "json"))
     assert set(written) == {"html", "json"}
+
+
+@pytest.mark.parametrize(
+    ("module", "function", "takes", "ending"),
+    [
+        ("io.export.triangles", "write_obj", "mesh", "obj"),
+        ("io.export.triangles", "write_ply", "mesh", "ply"),
+        ("io.export.triangles", "write_glb", "mesh", "glb"),
+        ("io.export.dxf", "write_mesh_dxf", "mesh", "dxf"),
+        ("io.export.dxf", "write_section_dxf", "cut", "dxf"),
+        ("io.export.section_csv", "write_section_csv", "cut", "csv"),
+        ("io.export.geopackage", "write_contours_gpkg", "contours", "gpkg"),
+        ("io.export.landxml", "write_landxml", "mesh", "xml"),
+        ("io.export.tsurf", "write_tsurf", "mesh", "ts"),
+        ("io.export.geoh5", "write_geoh5", "mesh", "geoh5"),
+        ("io.export.omf", "write_omf", "mesh", "omf"),
+        ("io.export.vtk", "write_vtm", "mesh", "vtm"),
+        ("io.export.ifc", "write_ifc", "fit", "ifc"),
+        ("cad.step", "write_step", "fit", "step"),
+    ],
+)
+def test_a_writer_called_by_itself_writes_broken_names(module, function, takes, ending, broken, tmp_path):
+    """Nine of them ended in a UnicodeEncodeError: only write_surface knew of such names."""
+    fit, _ = broken
+    given = {
+        "fit": lambda: fit,
+        "mesh": lambda: fit.triangulate(0.1),
+        "cut": lambda: geofit.cut_section(fit, [[10.0, 10.0], [190.0, 180.0]]),
+        "contours": lambda: geofit.contours(fit, 2.0),
+    }[takes]()
+    if ending in ("gpkg", "geoh5", "ifc"):
+        pytest.importorskip({"gpkg": "pyogrio", "geoh5": "h5py", "ifc": "ifcopenshell"}[ending])
+    write = getattr(import_module(f"geofit.{module}"), function)
+    write(dict.fromkeys(("A\ud800", "A\ud801"), given), tmp_path / f"a.{ending}")
+    assert (tmp_path / f"a.{ending}").stat().st_size > 100
+
+
+def test_layers_in_gbk_of_a_drawing_that_states_utf8_stay_apart(tmp_path):
+    """Each byte of them had become a question mark, and two horizons one."""
+    drawing = ezdxf.new("R2010")
+    for k, name in enumerate(("AAAA", "BBBB")):
+        drawing.layers.add(name)
+        line = [(x, 100.0 - 20.0 * k) for x in range(0, 400, 20)]
+        drawing.modelspace().add_lwpolyline(line, dxfattribs={"layer": name})
+    drawing.saveas(tmp_path / "C1.dxf")
+    data = (tmp_path / "C1.dxf").read_bytes()
+    for ascii_name, name in ((b"AAAA", "灰岩"), (b"BBBB", "泥岩")):
+        data = data.replace(ascii_name, name.encode("gbk"))
+    (tmp_path / "C1.dxf").write_bytes(data)
+    line = "[[500000.0, 3100000.0], [500400.0, 3100000.0]]"
+    (tmp_path / "site.toml").write_text(f'[site]\n[[section]]\nname = "C1"\nline = {line}\nfile = "C1.dxf"\n')
+    horizons = geofit.read_site(tmp_path / "site.toml").horizons
+    assert {name: len(points) for name, points in horizons.items()} == {"灰岩": 20, "泥岩": 20}

@@ -117,6 +117,16 @@ def test_holes_stand_where_they_are(written):
     assert system.Name == "EPSG:32648"
 
 
+def test_holes_of_one_name_are_two(tmp_path):
+    """Both had one identifier, of which programs keep the first."""
+    ifcopenshell = pytest.importorskip("ifcopenshell")
+    other = Hole("ZK1", "borehole", HOLES[0].depth, np.add(HOLES[0].xyz, [100.0, 0.0, 0.0]))
+    write_ifc({}, tmp_path / "two.ifc", holes=(HOLES[0], other))
+    holes = ifcopenshell.open(tmp_path / "two.ifc").by_type("IfcBorehole")
+    assert [hole.Name for hole in holes] == ["ZK1", "ZK1"]
+    assert len({hole.GlobalId for hole in holes}) == 2
+
+
 def test_same_site_same_bytes(written, tmp_path):
     write_ifc(surfaces(), tmp_path / "b.ifc", holes=HOLES, site="Dam 坝址", crs="EPSG:32648", tolerance=2.0)
     assert (tmp_path / "b.ifc").read_bytes() == written[0].read_bytes()

@@ -220,3 +220,15 @@ def test_orientations_are_kept(make_site):
     assert found.row.tolist() == [2, 2, 2]
     counts = {count.file: (count.read, count.used, count.listed) for count in read.counts}
     assert counts["dips.csv"] == counts["normals.csv"] == (2, 1, 1)
+
+
+def test_a_section_line_far_off_the_study_area_is_warned_of(make_site):
+    """In a site in feet its corners were given in feet, too; its points lay thousands of kilometres away."""
+    site_file = make_site()
+    assert not [one for one in read_site(site_file).issues if one.reason.code == "io.line-far-outside"]
+    feet = "line = [[1640420, 10170604], [1641404, 10171916], [1641404, 10173556]]"
+    metres = "line = [[500000, 3100000], [500300, 3100400], [500300, 3100900]]"
+    text = site_file.read_text(encoding="utf-8")
+    site_file.write_text(text.replace(metres, feet), encoding="utf-8")
+    (issue,) = [one for one in read_site(site_file).issues if one.reason.code == "io.line-far-outside"]
+    assert (issue.severity, issue.file, issue.value) == ("warning", "site.toml", "C1")

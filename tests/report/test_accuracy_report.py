@@ -14,11 +14,12 @@ from results import examined, horizon
 from geofit.data.errors import MissingDependencyError
 from geofit.data.languages import EN, ZH
 from geofit.data.messages import message
+from geofit.data.site import TableCount
 from geofit.report import fonts
 from geofit.report.accuracy_report import AccuracyReport
 from geofit.report.chapters import document
 from geofit.report.digits import metres
-from geofit.report.gather import accuracy_report, today
+from geofit.report.gather import accuracy_report, inputs_of, today
 from geofit.report.html import write_html
 from geofit.report.pdf import write_pdf
 from geofit.report.pictures import draw_pictures, draw_site
@@ -353,3 +354,13 @@ def test_without_a_chinese_font_english_works_and_chinese_refuses(report, monkey
 )
 def test_metres_have_three_digits_and_never_less_than_a_millimetre(value, text):
     assert metres(value).replace("\N{NO-BREAK SPACE}", " ") == text
+
+
+def test_rows_of_a_file_that_is_read_for_two_purposes_are_added():
+    """Of a drawing with adits and their contacts the report had the rows of the last reading alone."""
+    result = horizon()
+    counts = (*result.site.counts, TableCount("picks.csv", 10, 7, 3), TableCount("map.dxf", 4, 4, 0))
+    files = {file.file: file for file in inputs_of(replace(result.site, counts=counts))}
+    assert [files["picks.csv"].read, files["picks.csv"].used, files["picks.csv"].listed] == [211, 207, 4]
+    assert files["picks.csv"].sha256 == "ab" * 32
+    assert [files["map.dxf"].read, files["map.dxf"].sha256] == [4, ""]

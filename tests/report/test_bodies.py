@@ -120,6 +120,10 @@ def test_what_was_not_examined_and_a_failed_check_are_said(run):
     text = words(body_chapter(bare, EN))
     assert "Not examined: what the body predicts" in text
     assert "No holes are suggested." in text
+    unexamined = body_chapter(replace(bare, suggested=None), EN).blocks
+    (at,) = (k for k, block in enumerate(unexamined) if block == Heading("Suggested boreholes"))
+    assert unexamined[at + 1] == Paragraph("Not examined.")
+    assert BodyFindings(run.body, run.volumes).suggested is None
     broken = replace(run.body.accuracy.checks[0], passed=False)
     body = run.body.with_accuracy(replace(run.body.accuracy, checks=(broken,)))
     chapter = body_chapter(replace(bare, body=body), EN)
