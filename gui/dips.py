@@ -39,7 +39,7 @@ class Dips(QObject):
             False: dip_table(measured, name, surface, whole),
             True: dip_table(measured, "", surface, whole),
         }
-        colours = horizon_colours([*document.site.horizons, *document.read.horizons])
+        colours = horizon_colours([*document.horizons, *document.read.horizons], document.site.blocks)
         self._panels.stereonet.show_dips(name, tables, colours)
 
     def _chosen_in_panel(self, index: int) -> None:

@@ -162,6 +162,7 @@ class Delivering(QObject):
             dialog.examined.connect(
                 lambda name, prediction: self._document.put_prediction(provenances[name], prediction)
             )
+            dialog.ordered.connect(lambda orders: self._showing.show_orders(orders, provenances))
             dialog.exec()
 
     def result(self, name: str, surface: HorizonFit) -> HorizonResult:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-__all__ = ["Stamp", "stamp"]
+__all__ = ["Stamp", "changed_since", "stamp", "stamps_of"]
 
 #: Time of the last change and size of a file: unless these differ its hash need not be looked at. None: no file.
 Stamp = tuple[int, int] | None
@@ -17,3 +18,13 @@ def stamp(file: Path) -> Stamp:
     except OSError:
         return None
     return found.st_mtime_ns, found.st_size
+
+
+def stamps_of(files: Iterable[Path]) -> dict[Path, Stamp]:
+    """Return the stamp of each file."""
+    return {file: stamp(file) for file in files}
+
+
+def changed_since(stamps: Mapping[Path, Stamp]) -> list[Path]:
+    """Return the files that were written since, of those with stamps."""
+    return [file for file, before in stamps.items() if stamp(file) not in (before, None)]

@@ -10,7 +10,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from geofit.data.accuracy import Accuracy
-from geofit.data.messages import Untranslated, message
+from geofit.data.messages import Untranslated, message, plural_message
 from geofit.data.prediction import PredictionResult
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
@@ -273,8 +273,20 @@ class Fitting(QObject):
         if provenance is None:
             return
         self._document.put(provenance, surface)
-        if self._document.state.provenances.get(provenance.horizon) != provenance:
-            self.push(SetSurface(provenance))
+        former = self._document.state.provenances.get(provenance.horizon)
+        if former == provenance:
+            return
+        self.push(SetSurface(provenance))
+        if former is not None and former.edits:
+            text = plural_message(
+                "gui.edits-replaced",
+                "The new fit of {name} drops the edit made after the former fit. Undo brings it back.",
+                "The new fit of {name} drops the {count} edits made after the former fit. Undo brings them back.",
+                count=len(former.edits),
+                name=Untranslated(provenance.horizon),
+            )
+            _LOG.warning(text)
+            self.reported.emit(translated(text))
 
     def _put(self, made_from: Provenance, surface: HorizonFit) -> None:
         provenance = self._renamed(made_from)

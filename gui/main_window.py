@@ -100,7 +100,7 @@ class MainWindow(QMainWindow):
         self.context = ContextMenus(document, self.panels, self.fitting, self.selecting, self.actions_, self)
         self.bodies = Bodies(session, self.activity, self.fitting, self.showing, self.panels, preferences, self)
         self.morphing = Morphing(session.document, self.activity, self.fitting, self.bodies, self.panels, self)
-        self.surveys = Surveys(session.document, self.activity, self.bodies, self)
+        self.surveys = Surveys(session.document, self.activity, self.bodies, self.ordering, self)
         self.help = Help(self, self._panel_in_use)
         self._connect_actions()
         self._connect_panels()

@@ -74,10 +74,12 @@ class Ordering(QObject):
         )  # fmt: skip
 
     def strata(self) -> dict[str, HorizonFit]:
-        """Return the surfaces over the map; where the site states an order, those that it names (weathering cuts)."""
-        document, stated = self._document, self._document.site.order
+        """Return the surfaces over the map that are not faults; where the site states an order, those that it names."""
+        document, site = self._document, self._document.site
+        # Weathering cuts strata. Of a fault nothing lies above or below, also where it is gentle enough for a map.
+        known = set(site.order) or {document.whole(name) for name in document.horizons} - set(site.faults)
         over = over_map(document.surfaces())
-        return {name: one for name, one in over.items() if not stated or document.whole(name) in stated}
+        return {name: one for name, one in over.items() if document.whole(name) in known}
 
     def ask_separation(self) -> None:
         """Ask how thick the rock between two horizons is at least, and separate them."""

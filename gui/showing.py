@@ -160,10 +160,13 @@ class Showing(QObject):
         self.show_section()
 
     def show_orders(self, orders: tuple[Order, ...], compared: Mapping[str, Provenance]) -> None:
-        """Show how the horizons lie to each other, in the checks; ``compared`` states from what they were made."""
+        """Show how horizons lie to each other, in the checks; ``compared`` states from what they were made."""
         present = self._document.state.provenances
         same = {name for name, made in compared.items() if present.get(name) == made}
-        self.orders = tuple(order for order in orders if {order.upper, order.lower} <= same)
+        pairs = [{order.upper, order.lower} for order in orders]
+        # A report compares what the site states, Check the order every two.
+        kept = [order for order in self.orders if {order.upper, order.lower} not in pairs]
+        self.orders = (*kept, *(order for order in orders if {order.upper, order.lower} <= same))
         self._compared = {**self._compared, **compared}
         self._show_tree()
         self._show_horizon()

@@ -11,11 +11,13 @@ from geofit.data.files import file_stems
 from geofit.gui.activity import Activity
 from geofit.gui.bodies import Bodies
 from geofit.gui.dialogs.survey import SurveyDialog
+from geofit.gui.ordering import Ordering
 from geofit.project.cave_run import CaveRun
 from geofit.project.cave_view import passage_mesh
 from geofit.project.document import Document
 from geofit.project.known_sources import file_sources
-from geofit.surfaces.protocol import Surface
+from geofit.project.ordering import joined
+from geofit.surfaces.protocol import HasElevation
 
 __all__ = ["Surveys"]
 
@@ -25,9 +27,12 @@ class Surveys(QObject):
 
     reported = Signal(str)
 
-    def __init__(self, document: Document, activity: Activity, bodies: Bodies, window: QWidget) -> None:
+    def __init__(
+        self, document: Document, activity: Activity, bodies: Bodies, ordering: Ordering, window: QWidget
+    ) -> None:
         super().__init__(window)
         self._document, self._activity, self._bodies, self._window = document, activity, bodies, window
+        self._ordering = ordering
         self.dialog: SurveyDialog | None = None
 
     def open(self, path: Path | None = None) -> None:
@@ -52,9 +57,11 @@ class Surveys(QObject):
         if self.dialog is not None:
             self.dialog.reject()
 
-    def _horizons(self) -> dict[str, Surface]:
+    def _horizons(self) -> dict[str, HasElevation]:
+        """Return the strata: a steep fault or a fold has no height, and nothing lies above or below it."""
         # The model behind the patches need not travel to another process.
-        return {name: surface.with_(model=None) for name, surface in self._document.surfaces().items()}
+        surfaces = {name: surface.with_(model=None) for name, surface in self._ordering.strata().items()}
+        return dict(joined(surfaces, self._document.state.parts))
 
     def _add(self, run: CaveRun) -> None:
         """Write the body beside the site, and take it as a body of closed triangles: one step that can be undone."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 import logging
 import multiprocessing
+import shutil
 import threading
 import time
 import traceback
@@ -17,12 +18,14 @@ from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection
 from multiprocessing.reduction import ForkingPickler
+from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import QCoreApplication, QObject, Qt, QThreadPool, Signal
 from shiboken6 import isValid
 
 from geofit.data.errors import Cancelled, GeofitError
+from geofit.data.files import report_unfinished_to
 from geofit.data.messages import message
 
 __all__ = ["Task", "finish_all", "run", "run_in_process", "tasks", "warm"]
@@ -35,6 +38,8 @@ _PAUSE = 0.05
 _LOOK = 0.05
 #: Seconds that a process has to end when it is asked to.
 _PATIENCE = 1.0
+#: Bytes of the longest news of a file; what is longer is a result.
+_SHORT = 1 << 16
 
 
 class _Line:
@@ -241,6 +246,8 @@ class Helper:
     def __init__(self, first: Callable[..., Any] | None = None) -> None:
         self.first = first
         self._sender: threading.Thread | None = None
+        #: Files and folders that the process has begun, and will remove or rename.
+        self._unfinished: set[Path] = set()
         # A fresh interpreter: a fork of a process with threads and a window would inherit locks nobody frees.
         context = multiprocessing.get_context("spawn")
         self.pipe, theirs = context.Pipe()
@@ -282,6 +289,8 @@ class Helper:
                 self._sender.join()  # the order was read: no thread outlives the call
             elif kind == "progress":
                 name, fraction = value
+            elif kind == "file":
+                self._hear_file(*value)
             elif kind == "error":
                 raise _ChildError(value)
             else:
@@ -299,8 +308,28 @@ class Helper:
         self._process.join()
         if self._sender is not None:
             self._sender.join(_PATIENCE)  # nobody reads any more: its writing fails
+        self._sweep()
         self.pipe.close()
         self._process.close()
+
+    def _hear_file(self, path: Path, begun: bool) -> None:
+        (self._unfinished.add if begun else self._unfinished.discard)(path)
+
+    def _sweep(self) -> None:
+        """Remove the files that the ended process had begun: it could not."""
+        with suppress(Exception):  # its last news may be cut off
+            while self.pipe.poll():
+                news = self.pipe.recv_bytes()
+                if len(news) < _SHORT:
+                    kind, value = ForkingPickler.loads(news)
+                    if kind == "file":
+                        self._hear_file(*value)
+        for path in self._unfinished:
+            if path.is_dir():
+                shutil.rmtree(path, ignore_errors=True)
+            else:
+                with suppress(OSError):
+                    path.unlink(missing_ok=True)
 
 
 class _ChildError(Exception):
@@ -355,19 +384,27 @@ def _serve(pipe: Connection, first: Callable[..., Any] | None) -> None:
     if first is not None:
         first()
 
-    def listen(stage: str, fraction: float, /) -> None:
-        pipe.send(("progress", (stage, fraction)))
+    # Threads of a task may write files, too.
+    turn = threading.Lock()
 
+    def send(kind: str, value: object) -> None:
+        with turn:
+            pipe.send((kind, value))
+
+    def listen(stage: str, fraction: float, /) -> None:
+        send("progress", (stage, fraction))
+
+    report_unfinished_to(lambda path, begun: send("file", (path.absolute(), begun)))
     while True:
         try:
             function, args = pipe.recv()
         except EOFError:
             return  # the application has ended
-        pipe.send(("begun", None))
+        send("begun", None)
         try:
-            pipe.send(("done", function(*args, progress=listen)))
+            send("done", function(*args, progress=listen))
         except Exception as error:  # the last frame of this task: the window must hear of any failure
-            pipe.send(("error", _portable(error)))
+            send("error", _portable(error))
 
 
 def _portable(error: Exception) -> Exception:

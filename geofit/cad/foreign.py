@@ -15,6 +15,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -25,6 +26,7 @@ import numpy as np
 from geofit.cad.handover import load_result, refused, save_reason, save_result
 from geofit.cad.imported import existing
 from geofit.data.errors import GeofitError, InputError, MissingDependencyError
+from geofit.data.files import unfinished_file
 from geofit.data.legible import legible
 from geofit.data.messages import message
 
@@ -64,22 +66,11 @@ def read_in_child(path: str | PathLike[str], reader: str) -> dict[str, Any]:
     source = existing(path)
     size = source.stat().st_size
     seconds = SECONDS + SECONDS_MB * size / 1e6
-    with tempfile.TemporaryDirectory(prefix="geofit-") as folder:
+    with tempfile.TemporaryDirectory(prefix="geofit-") as folder, unfinished_file(folder):
         result = Path(folder) / "result.npz"
         command = [sys.executable, "-P", "-m", "geofit.cad.foreign", reader, str(source), str(result)]
         command += [str(int(np.ceil(seconds))), str(MEMORY + MEMORY_BYTE * size)]
-        try:
-            ended = subprocess.run(
-                command,
-                timeout=WAITING * seconds,
-                check=False,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-                env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
-            ).returncode
-        except subprocess.TimeoutExpired:
-            ended = _TOO_LONG
+        ended = _run(command, WAITING * seconds)
         if ended == _TOO_LONG:
             raise refused(
                 source,
@@ -95,6 +86,34 @@ def read_in_child(path: str | PathLike[str], reader: str) -> dict[str, Any]:
                 ),
             )
         return load_result(result, source)
+
+
+def _run(command: Sequence[str], seconds: float) -> int:
+    """Run a child, which ends when this process does; return its exit code."""
+    with subprocess.Popen(
+        command,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
+    ) as process:
+        try:
+            return process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            return _TOO_LONG
+        finally:
+            process.kill()
+
+
+def _end_with_caller() -> None:
+    """End this process when the one that waits for it has ended: then nobody wants the result, or sweeps the folder."""
+
+    def watch() -> None:
+        # The caller writes nothing, and the system closes its end. Not sys.stdin: its lock would be held at the end.
+        os.read(0, 1)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def child(arguments: Sequence[str]) -> int:
@@ -140,4 +159,5 @@ def _limit(seconds: int, memory: int) -> None:
 
 
 if __name__ == "__main__":
+    _end_with_caller()
     sys.exit(child(sys.argv[1:]))

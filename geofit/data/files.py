@@ -6,7 +6,7 @@ import errno
 import os
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
@@ -26,7 +26,9 @@ __all__ = [
     "note_input",
     "refuse_inputs",
     "replacing",
+    "report_unfinished_to",
     "spreadsheet_cell",
+    "unfinished_file",
 ]
 
 _RESERVED = {"con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt") for i in "123456789¹²³")}
@@ -34,6 +36,34 @@ _RESERVED = {"con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt
 _LONGEST = 150
 #: Files that the run in progress reads; None outside a run: a window may save what it opened.
 _INPUTS: ContextVar[set[Path] | None] = ContextVar("inputs", default=None)
+#: Who hears of files that are not whole yet; nobody, as a rule.
+_LISTENERS: list[Callable[[Path, bool], object]] = []
+
+
+def report_unfinished_to(listener: Callable[[Path, bool], object]) -> None:
+    """Call ``listener(path, True)`` for each file or folder that this process begins and will remove or rename.
+
+    ``listener(path, False)`` follows when it is gone. A process that is ended from outside removes nothing: whoever
+    ends it then knows what to remove.
+    """
+    _LISTENERS.append(listener)
+
+
+@contextmanager
+def unfinished_file(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Remove a file at the end of the block, however it ends; those of :func:`report_unfinished_to` hear of both.
+
+    A folder is reported, too; whoever made it removes it.
+    """
+    for listener in _LISTENERS:
+        listener(Path(path), True)
+    try:
+        yield
+    finally:
+        with suppress(OSError):
+            Path(path).unlink(missing_ok=True)
+        for listener in _LISTENERS:
+            listener(Path(path), False)
 
 
 @contextmanager
@@ -116,16 +146,14 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     # Short: the name of the file may be as long as the system allows.
     part = path.with_name(f".{uuid4().hex[:8]}.part{path.suffix}")
     try:
-        yield part
-        os.replace(part, path)
+        with unfinished_file(part):
+            yield part
+            os.replace(part, path)
     except OSError as error:
         named = {str(name) for name in (error.filename, error.filename2) if name is not None}
         if error.errno is None or (named and str(part) not in named and str(path) not in named):
             raise  # another file's
         raise cannot_write(error, path) from None
-    finally:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
 
 
 def cannot_write(error: OSError, path: str | os.PathLike[str]) -> InputError:

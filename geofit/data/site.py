@@ -151,6 +151,8 @@ class Site:
         What the report's cover says: project, client, document, status, revisions.
     datum : (3,) tuple of float or None
         Project datum: easting, northing and elevation in map coordinates, metres; an origin for STEP files.
+    blocks : mapping of str to str
+        Of those of ``horizons`` that are fault blocks: the horizon that each is a block of.
     """
 
     name: str
@@ -170,6 +172,7 @@ class Site:
     boreholes: tuple[LoggedHoles, ...] = ()
     title: TitleBlock = field(default_factory=TitleBlock)
     datum: tuple[float, float, float] | None = None
+    blocks: Mapping[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"<Site {self.name}: {', '.join(f'{key} {value}' for key, value in self._counted().items())}>"

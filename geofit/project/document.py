@@ -225,15 +225,16 @@ class Document:
         return self._points[key]
 
     def site_in_use(self) -> Site:
-        """Return the site under its present name, with the points that take part, in the present order.
+        """Return the site under its present name, with the points that take part, in the present order of the horizons.
 
         It is one object until one of these changes.
         """
         horizons = {name: self.points(name) for name in self.horizons}
+        order = tuple(name for name in dict.fromkeys(map(self.whole, horizons)) if name in self.site.order)
         used = self._used
-        same = used.name == self._state.name and list(used.horizons) == list(horizons)
+        same = used.name == self._state.name and used.order == order and list(used.horizons) == list(horizons)
         if not same or any(used.horizons[name] is not points for name, points in horizons.items()):
-            self._used = replace(self.site, name=self._state.name, horizons=horizons)
+            self._used = replace(self.site, name=self._state.name, horizons=horizons, order=order)
         return self._used
 
     def settings(self, name: str) -> FitSettings:

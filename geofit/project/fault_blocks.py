@@ -54,7 +54,7 @@ def site_with_blocks(site: Site, parts: Mapping[str, Part]) -> Site:
         for whole, points in site.horizons.items()
         for name, part in blocks.get(whole, {whole: None}).items()
     }
-    return replace(site, horizons=horizons)
+    return replace(site, horizons=horizons, blocks={name: part.horizon for name, part in parts.items()})
 
 
 def split_at_faults(

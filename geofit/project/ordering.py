@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 
-from threadpoolctl import threadpool_limits
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Ground, Site
+from geofit.data.threads import one_thread
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.elevation import plan_map
 from geofit.project.fault_blocks import same_side
@@ -18,7 +20,7 @@ from geofit.site.order import Order, compare_pairs
 from geofit.site.separate import Separation, separate_horizons
 from geofit.site.site_checks import add_site_checks
 
-__all__ = ["all_orders", "comparable", "over_map", "separated"]
+__all__ = ["JoinedBlocks", "all_orders", "comparable", "joined", "over_map", "separated"]
 
 
 def over_map(surfaces: Mapping[str, HorizonFit]) -> dict[str, HorizonFit]:
@@ -28,6 +30,28 @@ def over_map(surfaces: Mapping[str, HorizonFit]) -> dict[str, HorizonFit]:
         for name, surface in surfaces.items()
         if surface.patches and all(plan_map(patch) is not None for patch in surface.patches)
     }
+
+
+@dataclass(frozen=True, eq=False)
+class JoinedBlocks:
+    """Fault blocks of a horizon as one height field: at each place that of the block that reaches there."""
+
+    blocks: tuple[HorizonFit, ...]
+
+    def elevation(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.float64]:
+        """Return the heights at map coordinates, nan between the blocks and beyond them; arrays broadcast."""
+        first, *others = (np.asarray(block.elevation(x, y), float) for block in self.blocks)
+        for other in others:
+            first = np.where(np.isnan(first), other, first)
+        return first
+
+
+def joined(surfaces: Mapping[str, HorizonFit], parts: Mapping[str, Part]) -> dict[str, HorizonFit | JoinedBlocks]:
+    """Return surfaces by their horizons, the fault blocks of each as one."""
+    wholes: dict[str, list[HorizonFit]] = {}
+    for name, surface in surfaces.items():
+        wholes.setdefault(parts[name].horizon if name in parts else name, []).append(surface)
+    return {name: found[0] if len(found) == 1 else JoinedBlocks(tuple(found)) for name, found in wholes.items()}
 
 
 def comparable(names: Sequence[str], parts: Mapping[str, Part]) -> tuple[tuple[str, str], ...]:
@@ -43,7 +67,7 @@ def all_orders(
     progress: Progress,
 ) -> tuple[Order, ...]:
     """Compare pairs of horizons, the upper one first."""
-    with threadpool_limits(limits=1):
+    with one_thread():
         return compare_pairs(surfaces, pairs, ground, lambda share: tell(progress, "order", share))
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.messages import Untranslated, message
 from geofit.data.progress import Progress, tell, within
 
 if TYPE_CHECKING:
@@ -119,11 +120,15 @@ def read_grey(
     from geofit.io.volume_slices import sliceable
     from geofit.io.volumes import read_voxels
     from geofit.pores.threshold import grey_histogram, histogram_of_counts, otsu_of_histogram, value_counts
-    from geofit.pores.volume import check_array
+    from geofit.pores.volume import VolumeError, check_array
 
     tell(progress, "reading", 0.0)
     values, voxel = read_voxels(path, shape=shape, dtype=dtype)
-    check_array(values)
+    try:
+        check_array(values)
+    except VolumeError as error:  # a window may still show the volume before it
+        named = message("project.file-note", "{file}: {reason}", file=Untranslated(path.name), reason=error.message)
+        raise VolumeError(named) from None
     tell(progress, "histogram", 0.6)
     if values.dtype == bool:
         values = values.view(np.uint8)

@@ -16,6 +16,7 @@ from geofit.project.fault_blocks import Blocks, site_fit
 from geofit.project.run import Form, write_reports
 from geofit.project.single_reports import BodyPart, body_part
 from geofit.report.result import HorizonResult
+from geofit.site.order import Order
 
 __all__ = ["ReportFiles", "write_report_files"]
 
@@ -25,13 +26,13 @@ class ReportFiles:
     """What was written, by form, and what is to be told about it.
 
     ``prediction`` is what was found out for it away from the data, a horizon; not of surfaces with nothing behind
-    them: of those
-    nothing can be found out yet.
+    them: of those nothing can be found out yet. ``orders`` states how its horizons lie to each other.
     """
 
     files: Mapping[Form, Path]
     warnings: tuple[Message, ...]
     prediction: Mapping[str, PredictionResult]
+    orders: tuple[Order, ...] = ()
 
 
 def write_report_files(
@@ -65,7 +66,7 @@ def write_report_files(
     }
     stale = [*(result.name for result in results if result.stale), *(part.name for part in parts if part.stale)]
     warnings = (*([stale_warning(stale)] if stale else []), *made.warnings, *failed)
-    return ReportFiles(made.files, warnings, new)
+    return ReportFiles(made.files, warnings, new, made.orders)
 
 
 def _parts(

@@ -310,7 +310,10 @@ def _examined(
         )
         for name in order
     ]  # fmt: skip
-    bare = [HorizonResult(surface.with_(model=None), site) for surface in fits.surfaces.values()]
+    bare = [
+        HorizonResult(surface.with_(model=None), site, horizon=fits.horizon[name])
+        for name, surface in fits.surfaces.items()
+    ]
     if bare:
         tasks.append(partial(draw_site, bare, language))
     found: dict[str, Made] = {}
@@ -335,11 +338,15 @@ def _size(fits: SiteFit, name: str) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Reports:
-    """What was written of a report, by form, what is to be told about it, and what it was made from."""
+    """What was written of a report, by form, what is to be told about it, and what it was made from.
+
+    ``orders`` states how its horizons lie to each other.
+    """
 
     files: Mapping[Form, Path]
     warnings: tuple[Message, ...]
     results: tuple[HorizonResult, ...]
+    orders: tuple[Order, ...] = ()
 
 
 def report_paths(folder: Path, forms: Iterable[Form]) -> dict[Form, Path]:
@@ -447,6 +454,7 @@ def write_reports(
         report_paths(out, forms),
         tuple(text for text in (font, *warnings, unordered, whole.missing) if text),
         tuple(made),
+        orders or (),
     )
 
 

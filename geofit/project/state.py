@@ -52,7 +52,7 @@ class State:
     def of_site(cls, site: Site) -> State:
         """Return the work on a site that nobody has begun."""
         settings = {name: site.settings.get(name, FitSettings()) for name in site.horizons}
-        return cls(site.name, tuple(site.horizons), settings, data=data_digest(site))
+        return cls(site.name, _highest_first(site), settings, data=data_digest(site))
 
     def to_data(self) -> dict[str, Any]:
         """Return numbers, words, lists and mappings only."""
@@ -90,3 +90,9 @@ class State:
             tuple(HorizonEdit.from_data(one) for one in data.get("horizons", ())),
             {name: BodyRecord.from_data(record) for name, record in data.get("bodies", {}).items()},
         )
+
+
+def _highest_first(site: Site) -> tuple[str, ...]:
+    """Return the horizons in the order of the files; those of the stated order change places among themselves."""
+    stated = iter([name for name in site.order if name in site.horizons])
+    return tuple(next(stated) if name in site.order else name for name in site.horizons)

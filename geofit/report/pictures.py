@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +14,7 @@ from geofit.data.files import replacing
 from geofit.data.guard import guarded
 from geofit.data.languages import EN, Language, together, translate
 from geofit.data.messages import Message
-from geofit.data.site import Section
+from geofit.data.site import Section, Site
 from geofit.report import digits, plots, scene
 from geofit.report.box import draw_boxed
 from geofit.report.change_map import change_map
@@ -27,13 +27,13 @@ from geofit.report.stereonet import StereonetContent, angles, stereonet
 from geofit.report.style import (
     CORE,
     FAIL,
-    HORIZONS,
     MUTED,
     PASS,
     TEXT,
     WARNING,
     clauses_in_lines,
     drawing,
+    horizon_colours,
     legend_columns,
     shortened,
 )
@@ -124,9 +124,10 @@ def draw_site(results: Sequence[HorizonResult], t: Language = EN) -> Pictures:
 
     missing: list[Message] = []
     nothing: Scene | None = None
-    view = guarded(
-        lambda: scene.site_scene([r.surface for r in results], results[0].site.holes), nothing, missing.append
-    )
+    site, surfaces = _site(results), [result.surface for result in results]
+    known = horizon_colours([*site.horizons, *(result.name for result in results)], site.blocks)
+    colours = [known[result.name] for result in results]
+    view = guarded(lambda: scene.site_scene(surfaces, colours, site.holes), nothing, missing.append)
     if view is None:
         return Pictures({}, None, missing[0])
     with drawing(TYPE):
@@ -134,7 +135,7 @@ def draw_site(results: Sequence[HorizonResult], t: Language = EN) -> Pictures:
         axes = figure.add_axes((0.085, 0.115, 0.83, 0.865))
         draw_boxed(axes, view, t)
         names = [shortened(result.name) for result in results]
-        swatches = [Swatch(facecolor=HORIZONS[i % len(HORIZONS)], label=name) for i, name in enumerate(names)]
+        swatches = [Swatch(facecolor=c, label=name) for c, name in zip(colours, names, strict=True)]
         figure.legend(
             handles=swatches, loc="lower left", ncols=legend_columns(names, 25.4 * WIDTH, TYPE, 6), handlelength=1.2,
             borderaxespad=0, bbox_to_anchor=(0, 0.045), columnspacing=1.4,
@@ -147,13 +148,19 @@ def draw_site(results: Sequence[HorizonResult], t: Language = EN) -> Pictures:
 
 def draw_sections(results: Sequence[HorizonResult], sections: Sequence[Section], t: Language = EN) -> dict[str, bytes]:
     """Draw the geological sections of a report, by their names in it."""
-    site, points = results[0].site, {result.name: result.surface.points for result in results}
+    site, points = _site(results), {result.name: result.surface.points for result in results}
     drawn = {}
     for section in sections:
         cut, name = cut_of(results, section), section_picture(section)
         sheet = section_sheet(section, site, cut, name)
         drawn[name] = png(draw_section(sheet, section, site, cut, points, t))
     return drawn
+
+
+def _site(results: Sequence[HorizonResult]) -> Site:
+    """Return the site of results, which knows their fault blocks: its horizons may be whole."""
+    site = results[0].site
+    return replace(site, blocks={**site.blocks, **{r.name: r.horizon for r in results if r.horizon}})
 
 
 def write_picture(result: HorizonResult, pictures: Pictures, path: Path, t: Language = EN) -> None:

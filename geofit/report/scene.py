@@ -17,7 +17,7 @@ from geofit.data.messages import Message, message
 from geofit.data.site import Hole
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report.result import HorizonResult
-from geofit.report.style import HORIZONS, kind_style
+from geofit.report.style import kind_style
 from geofit.report.view import rims, trimmed
 
 if TYPE_CHECKING:
@@ -109,9 +109,12 @@ def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -
 
 
 def site_scene(
-    surfaces: Sequence[HorizonFit], holes: Sequence[Hole] = (), size: tuple[int, int] = (1800, 1300)
+    surfaces: Sequence[HorizonFit],
+    colours: Sequence[str],
+    holes: Sequence[Hole] = (),
+    size: tuple[int, int] = (1800, 1300),
 ) -> Scene:
-    """Draw all horizons of a site with its holes, one colour of ``HORIZONS`` each.
+    """Draw all horizons of a site, each in its colour, with the site's holes.
 
     Raises
     ------
@@ -124,7 +127,7 @@ def site_scene(
     place = _Place(surfaces[0].origin, raised)
     sheer = _opacities(surfaces)
     for i, surface in enumerate(surfaces):
-        _add_surface(plotter, _mesh(surface, place), color=HORIZONS[i % len(HORIZONS)], opacity=sheer[i])
+        _add_surface(plotter, _mesh(surface, place), color=colours[i], opacity=sheer[i])
         for rim in rims(surface, steps=400).values():
             _add_rim(plotter, surface, rim, place, color="#1c2733", line_width=2, opacity=0.35)
     for hole in holes:

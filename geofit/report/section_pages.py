@@ -222,7 +222,7 @@ def sheet_page(
     bottom = EDGE + BLOCK + BELOW + max((room_high - up) / 2, 0)
     left = EDGE + LEFT + max((room_wide - across) / 2, 0)
     axes = figure.add_axes((left / wide, bottom / high, across / wide, up / high))
-    colours = horizon_colours([*view.points, *(name for name in view.traces if name not in view.points)])
+    colours = horizon_colours([*view.points, *view.traces], view.blocks)
     styles = lithology_style(lithologies(list(views)))
     _draw(axes, view, colours, styles, scale, t)
     _number(axes, block.unit, up, t)

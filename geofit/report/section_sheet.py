@@ -120,7 +120,7 @@ def draw_section(
         axes = figure.add_axes((LEFT / SHEET, BELOW / height, wide / SHEET, tall / height))
         axes.set_xlim(0, length)
         axes.set_ylim(low, high)
-        colours = horizon_colours([*site.horizons, *cut])
+        colours = horizon_colours([*site.horizons, *cut], site.blocks)
         ground = _ground(axes, section, site.ground, length)
         for name, lines in cut.items():
             for line in lines:

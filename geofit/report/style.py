@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
@@ -75,15 +75,21 @@ def kind_style(kind: str) -> tuple[str, str]:
     return KIND_STYLE.get(kind, _OTHER)
 
 
-def horizon_colours(names: Iterable[str]) -> dict[str, str]:
+def horizon_colours(names: Iterable[str], blocks: Mapping[str, str] | None = None) -> dict[str, str]:
     """Return the colour of each horizon by its place in the site's order; the one place that decides it.
+
+    ``blocks`` names the horizon of each fault block: its blocks have its colour, and those below keep theirs.
 
     Examples
     --------
-    >>> horizon_colours(["T3-T2", "W"])["W"] == horizon_colours(["T3-T2", "W", "F1"])["W"]
-    True
+    >>> before = horizon_colours(["T3-T2", "W"])
+    >>> after = horizon_colours(["T3-T2 (A)", "T3-T2 (B)", "W", "F1"], {"T3-T2 (A)": "T3-T2", "T3-T2 (B)": "T3-T2"})
+    >>> after["T3-T2 (A)"] == after["T3-T2 (B)"] == before["T3-T2"], after["W"] == before["W"]
+    (True, True)
     """
-    return {name: HORIZONS[k % len(HORIZONS)] for k, name in enumerate(dict.fromkeys(names))}
+    whole = {name: (blocks or {}).get(name, name) for name in names}
+    place = {name: k for k, name in enumerate(dict.fromkeys(whole.values()))}
+    return {name: HORIZONS[place[of] % len(HORIZONS)] for name, of in whole.items()}
 
 
 def shortened(name: str, most: int = 28) -> str:

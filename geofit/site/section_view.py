@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -92,7 +92,8 @@ class SectionView:
     """A section along ``line`` (k, 2), map coordinates; everything else over the distance along it, metres.
 
     ``bends`` are the distances of the corners; ``points`` by horizon (n, 2), those within half of the ``thickness``.
-    ``stale`` names the surfaces and bodies that are shown and are older than their data.
+    ``stale`` names the surfaces and bodies that are shown and are older than their data; ``blocks`` the horizons of
+    which fault blocks are shown (:class:`~geofit.data.site.Site`).
     """
 
     name: str
@@ -105,6 +106,7 @@ class SectionView:
     points: Mapping[str, Floats]
     bodies: tuple[BodyTrace, ...] = ()
     stale: tuple[str, ...] = ()
+    blocks: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def length(self) -> float:
@@ -193,7 +195,8 @@ def section_view(
         near = beside <= thickness / 2
         shown[horizon] = np.column_stack([along[near], points.xyz[near, 2]])
     holes = tuple(track for hole in site.holes if (track := _hole(site, hole, corners, bends, thickness)) is not None)
-    return SectionView(name, corners, bends, thickness, traces, _ground(site.ground, corners, bends), holes, shown)
+    ground = _ground(site.ground, corners, bends)
+    return SectionView(name, corners, bends, thickness, traces, ground, holes, shown, blocks=site.blocks)
 
 
 def parallel_lines(axis: ArrayLike, spacing: float, half: float) -> dict[str, Floats]:

@@ -192,7 +192,9 @@ class ExportDialog(TaskDialog):
             return
         self.files, self._agreed = [], None
         self.say(self.tr("Writing, and reading back what was written…"))
-        self.begin(write_step_files, *work, on_done=self.show_files, on_stopped=partial(self._stopped, paths))
+        self.begin(
+            write_step_files, *work, on_done=self.show_files, on_stopped=partial(self._stopped, paths), files=paths
+        )
 
     def show_files(self, files: list[StepFile]) -> None:
         """Show what was written, and what reading it back gave."""
@@ -273,12 +275,12 @@ class ExportDialog(TaskDialog):
         header.setSectionResizeMode(header.count() - 1, QHeaderView.ResizeMode.Stretch)
 
     def _stopped(self, files: list[Path]) -> None:
-        """Sweep away what the ended process left half written."""
+        """Sweep away what the ended process left half written, and processes that nobody swept up after."""
         for folder in {file.parent for file in files}:
             for pattern in (".geofit-????????.step", ".????????.part.step"):
                 for rest in folder.glob(pattern):
                     rest.unlink(missing_ok=True)
-        self.say(self.tr("Stopped. No unfinished file was left."))
+        self.say(self.stopped_words(self.tr("Stopped. No unfinished file was left.")))
 
     def _open_folder(self) -> None:
         QDesktopServices.openUrl(QUrl.fromLocalFile(str(self.files[0].path.parent)))

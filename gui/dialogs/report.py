@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import QDate, QSettings, Qt, QUrl, Signal
@@ -49,11 +48,13 @@ class ReportDialog(TaskDialog):
     """Asks how the report shall be, writes it in a process of its own, and opens it.
 
     ``written(path)`` is emitted for the form that people read: the PDF if there is one, else the HTML, else the JSON;
-    ``examined(name, prediction)`` for each horizon that was examined away from its data on the way.
+    ``examined(name, prediction)`` for each horizon that was examined away from its data on the way, ``ordered(orders)``
+    with how the horizons lie to each other.
     """
 
     written = Signal(object)
     examined = Signal(str, object)
+    ordered = Signal(object)
 
     def __init__(
         self,
@@ -170,7 +171,7 @@ class ReportDialog(TaskDialog):
 
     def _write(self) -> None:
         folder = Path(self.folder.text().strip()).expanduser()
-        files = report_paths(folder, self._chosen()).values()
+        files = list(report_paths(folder, self._chosen()).values())
         if not may_replace([file for file in files if file not in self._own], self.windowTitle(), self):
             return
         examined = self.examine.isChecked()
@@ -198,12 +199,14 @@ class ReportDialog(TaskDialog):
             write_report_files,
             *work,
             on_done=self._done,
-            on_stopped=partial(self.say, self.tr("Stopped. No report was written.")),
+            on_stopped=lambda: self.say(self.stopped_words(self.tr("Stopped. No report was written."))),
+            files=files,
         )
 
     def _done(self, made: ReportFiles) -> None:
         for name, prediction in made.prediction.items():
             self.examined.emit(name, prediction)
+        self.ordered.emit(made.orders)
         self._results = [
             replace(result, prediction=made.prediction.get(result.name, result.prediction)) for result in self._results
         ]

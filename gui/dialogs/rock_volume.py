@@ -32,7 +32,7 @@ from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.panels.volume_slices import VolumeSlices
 from geofit.gui.translate import translated
 from geofit.gui.view3d.pore_scene import PoreScene
-from geofit.io.volumes import RAW
+from geofit.io.volumes import RAW, TIFF
 from geofit.project.pore_view import GreyVolume, PoreView, pore_view, read_grey
 
 __all__ = ["RockVolumeDialog"]
@@ -100,6 +100,7 @@ class RockVolumeDialog(SceneDialog):
         self.slices, self.scene, self.table = VolumeSlices(), PoreScene(), DataTable()
         self.table.setAccessibleName(self.tr("Figures of the pore space"))
         self.open_button = QPushButton(self.tr("&Open a volume…"))
+        self.folder_button = QPushButton(self.tr("Open a fo&lder of slices…"))
         self.shape_button, self.assumed = QPushButton(self.tr("S&hape and type…")), QLabel()
         self.assumed.setWordWrap(True)
         for widget in (self.shape_button, self.assumed):
@@ -119,9 +120,10 @@ class RockVolumeDialog(SceneDialog):
         self.key = QLabel()
         self.key.setTextFormat(Qt.TextFormat.RichText)
         self.go.setText(self.tr("&Find pores"))
-        self.fields = (self.open_button, self.shape_button, self.low, self.high, self.edge)
+        self.fields = (self.open_button, self.folder_button, self.shape_button, self.low, self.high, self.edge)
         self._lay_out()
         self.open_button.clicked.connect(self._ask)
+        self.folder_button.clicked.connect(self._ask_folder)
         self.shape_button.clicked.connect(self._change_shape)
         self.go.clicked.connect(self._find)
         for box in (self.low, self.high, self.edge):
@@ -184,7 +186,7 @@ class RockVolumeDialog(SceneDialog):
         column = QVBoxLayout(left)
         column.setContentsMargins(0, 0, 0, 0)
         row = QHBoxLayout()
-        for button in (self.open_button, self.shape_button):
+        for button in (self.open_button, self.folder_button, self.shape_button):
             row.addWidget(button)
         row.addStretch(1)
         column.addLayout(row)
@@ -219,6 +221,11 @@ class RockVolumeDialog(SceneDialog):
         path, _ = QFileDialog.getOpenFileName(
             self, self.tr("Open a volume"), "", self.tr("Rock volumes ({kinds})").format(kinds=kinds)
         )
+        if path:
+            self.read(Path(path))
+
+    def _ask_folder(self) -> None:
+        path = QFileDialog.getExistingDirectory(self, self.tr("Open a folder of slices"))
         if path:
             self.read(Path(path))
 
@@ -274,13 +281,17 @@ class RockVolumeDialog(SceneDialog):
         self.slices.show_volume(volume)
         self._changed()
         if grey and known:
-            self.say(self.tr("The threshold is Otsu's. Check it."))
+            words = self.tr("The threshold is Otsu's. Check it.")
         elif grey:
-            self.say(self.tr("The threshold is Otsu's. Check it, and state the edge of a voxel."))
+            words = self.tr("The threshold is Otsu's. Check it, and state the edge of a voxel.")
         elif known:
-            self.say(self.tr("State which values are pore."))
+            words = self.tr("State which values are pore.")
         else:
-            self.say(self.tr("State which values are pore, and the edge of a voxel."))
+            words = self.tr("State which values are pore, and the edge of a voxel.")
+        single = len(volume.values) == 1 and path.suffix.lower() in TIFF
+        if single:
+            words = "\n".join([self.tr("The file has one slice. Open its folder to read all slices."), words])
+        self.say(words, "stale" if single else "none")
 
     def _file_edges(self) -> tuple[float, float, float] | None:
         """Return the edges of a voxel in metres that the file states, if they are lengths."""

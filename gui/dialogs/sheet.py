@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -166,12 +165,15 @@ class SheetDialog(TaskDialog):
         except GeofitError as error:
             self.say(failure(error), "failed")
             return
-        if not may_replace([file for file in self._targets() if file != self._agreed], self.windowTitle(), self):
+        targets = self._targets()
+        if not may_replace([file for file in targets if file != self._agreed], self.windowTitle(), self):
             return
         self.files, self._agreed = (), None
         self.say(self.drawing)
-        stopped = partial(self.say, self.tr("Stopped. No unfinished file was left."))
-        self.begin(function, *arguments, on_done=self._written, on_stopped=stopped)
+        self.begin(function, *arguments, on_done=self._written, on_stopped=self._stopped, files=targets)
+
+    def _stopped(self) -> None:
+        self.say(self.stopped_words(self.tr("Stopped. No unfinished file was left.")))
 
     def _targets(self) -> list[Path]:
         stem = self.path()

@@ -42,7 +42,7 @@ from geofit.project.cave_view import (
     wall_distance_counts,
     write_view,
 )
-from geofit.surfaces.protocol import Surface
+from geofit.surfaces.protocol import HasElevation
 
 __all__ = ["SurveyDialog"]
 
@@ -53,7 +53,7 @@ class SurveyDialog(SceneDialog):
     Parameters
     ----------
     horizons : callable
-        Returns the surfaces of the open site, the highest first; none where no site is open.
+        Returns the strata of the open site, the highest first; none where no site is open.
     can_add : callable
         Whether a site is open that can take the body.
 
@@ -66,7 +66,10 @@ class SurveyDialog(SceneDialog):
     written = Signal(object)
 
     def __init__(
-        self, horizons: Callable[[], Mapping[str, Surface]], can_add: Callable[[], bool], parent: QWidget | None = None
+        self,
+        horizons: Callable[[], Mapping[str, HasElevation]],
+        can_add: Callable[[], bool],
+        parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.setWindowTitle(self.tr("Survey of passages"))
@@ -119,9 +122,11 @@ class SurveyDialog(SceneDialog):
         Asks before files are replaced.
         """
         assert self.run is not None
-        if not may_replace(view_files(self.run, folder, report), self.windowTitle(), self):
+        files = view_files(self.run, folder, report)
+        if not may_replace(files, self.windowTitle(), self):
             return
-        self.begin(write_view, self.run, folder, report, user_language(), on_done=self._wrote, on_stopped=self._stopped)
+        work = (write_view, self.run, folder, report, user_language())
+        self.begin(*work, on_done=self._wrote, on_stopped=self._stopped, files=files)
 
     def refresh(self) -> None:
         """Enable what can be done with what is open."""
@@ -216,7 +221,10 @@ class SurveyDialog(SceneDialog):
             self.write(Path(folder), report=report)
 
     def _stopped(self) -> None:
-        self.say("\n".join([self.tr("Stopped. Nothing has changed."), *self._out_of_date()]))
+        lacking = self.adjusted is not None and self.run is None
+        otherwise = self.tr("Stopped. No body was made.") if lacking else self.tr("Stopped. Nothing has changed.")
+        words = self.stopped_words(otherwise)
+        self.say("\n".join([words, *self._out_of_date()]))
 
     def _opened(self, adjusted: AdjustedSurvey) -> None:
         self.adjusted, self.run = adjusted, None
@@ -240,7 +248,7 @@ class SurveyDialog(SceneDialog):
             self._conclude(self.tr("The body is made."))
         self.refresh()
 
-    def _used(self) -> dict[str, Surface]:
+    def _used(self) -> dict[str, HasElevation]:
         return dict(self._horizons()) if self.cut.isChecked() else {}
 
     def _cut(self) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import Qt, QTimer
@@ -11,6 +12,7 @@ from PySide6.QtWidgets import QDialog, QDialogButtonBox, QHBoxLayout, QLabel, QP
 from shiboken6 import isValid
 
 from geofit.data.errors import GeofitError
+from geofit.gui.file_stamps import Stamp, changed_since, stamps_of
 from geofit.gui.panels.marks import icon
 from geofit.gui.translate import failure, translated
 from geofit.gui.worker import Task, run, run_in_process
@@ -36,6 +38,8 @@ class TaskDialog(QDialog):
         super().__init__(parent)
         self._task: Task | None = None
         self._turn = 0
+        #: The files that the task writes, as they were before.
+        self._stamps: dict[Path, Stamp] = {}
         self._focused: QWidget | None = None
         self._foot: tuple[QWidget, ...] = ()
         self.fields: tuple[QWidget, ...] = ()
@@ -97,8 +101,13 @@ class TaskDialog(QDialog):
         on_done: Callable[[Any], object],
         on_stopped: Callable[[], object],
         in_process: bool = True,
+        files: Iterable[Path] = (),
     ) -> None:
-        """Call ``function(*args, progress=...)``, ``in_process`` in its own process; failures are shown."""
+        """Call ``function(*args, progress=...)``, ``in_process`` in its own process; failures are shown.
+
+        ``files`` are those that it writes, for :meth:`stopped_words`.
+        """
+        self._stamps = stamps_of(files)
         start = run_in_process if in_process else run
         self._focused = self.focusWidget()
         self.progress.setRange(0, 0)
@@ -116,6 +125,11 @@ class TaskDialog(QDialog):
         self._task.ended.connect(lambda turn=self._turn: self._rested(turn))
         self._patience.start(PATIENCE)
         self.refresh()
+
+    def stopped_words(self, otherwise: str) -> str:
+        """Return which files of a task that was stopped are whole already; ``otherwise`` where none is."""
+        names = ", ".join(file.name for file in changed_since(self._stamps))
+        return self.tr("Stopped. Already written: {names}.").format(names=names) if names else otherwise
 
     def refresh(self) -> None:
         """Enable what can be done."""

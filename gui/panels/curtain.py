@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from threadpoolctl import threadpool_limits
 
 from geofit.data.prediction import Uncertainty
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
+from geofit.data.threads import one_thread
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.mesh import Mesh
 from geofit.prediction.section_bands import SectionBand, section_bands
@@ -131,7 +131,7 @@ def trace(
         If ``progress`` returned False.
     """
     found: dict[str, list[tuple[CutLine, SectionBand | None]]] = {}
-    with threadpool_limits(limits=1):
+    with one_thread():
         for k, (name, surface) in enumerate(surfaces.items()):
             tell(progress, "section", k / len(surfaces))
             kept = meshes.get(name)

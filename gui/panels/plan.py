@@ -125,7 +125,7 @@ class PlanPanel(QWidget):
                 sections=tuple((section.name, section.line) for section in site.sections),
                 holes=tuple((hole.name, hole.xyz[:, :2]) for hole in site.holes),
                 name=name,
-                colour=horizon_colours([*site.horizons, name])[name],
+                colour=horizon_colours([*site.horizons, name], site.blocks)[name],
             ),
             keep_view=same,
         )

@@ -278,7 +278,7 @@ class ProjectTree(QWidget):
         verdict: Verdict | None,
     ) -> TreeRow:
         surface = surfaces.get(name)
-        count, colour = len(site.horizons[name]), horizon_colours(site.horizons)[name]
+        count, colour = len(site.horizons[name]), horizon_colours(site.horizons, site.blocks)[name]
         if surface is None or surface.accuracy is None:
             words = self.tr("{name}: not fitted yet").format(name=name)
             return TreeRow(name, ("horizon", name), count, icon(f"horizon:{colour}"), words)

@@ -57,7 +57,7 @@ class SectionData:
 
     def colour(self, name: str) -> str:
         """Return the colour of a horizon, the same wherever it stands."""
-        return horizon_colours([*self.site.horizons, *self.traces])[name]
+        return horizon_colours([*self.site.horizons, *self.traces], self.site.blocks)[name]
 
 
 class _Along(MaxNLocator):

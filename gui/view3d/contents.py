@@ -247,7 +247,9 @@ class Contents:
 
     def colour(self, name: str) -> str:
         """Return the colour of a horizon, as everywhere; those that the site does not have come after its own."""
-        return horizon_colours([*(self.site.horizons if self.site is not None else ()), *self.points])[name]
+        site = self.site
+        names, blocks = ((), {}) if site is None else (site.horizons, site.blocks)
+        return horizon_colours([*names, *self.points], blocks)[name]
 
     def residuals(self, name: str) -> Floats | None:
         """Return the residuals of a horizon's points, None where it has no checked surface of these points."""

@@ -96,6 +96,33 @@ def test_a_reader_that_never_returns_is_ended(step, monkeypatch):
     assert time.monotonic() - before < 20
 
 
+#: A child that counts until it is ended, and the process that waits for it.
+COUNTING = """
+import time
+from pathlib import Path
+from geofit.cad.foreign import _end_with_caller
+_end_with_caller()
+for k in range(100_000):
+    Path({file!r}).write_text("." * k)
+    time.sleep(0.01)
+"""
+WAITING = "import sys\nfrom geofit.cad.foreign import _run\n_run([sys.executable, '-c', {code!r}], 600)"
+
+
+def test_a_child_ends_with_the_process_that_waits_for_it(tmp_path):
+    file = tmp_path / "count"
+    waiting = subprocess.Popen([sys.executable, "-c", WAITING.format(code=COUNTING.format(file=str(file)))])
+    until = time.monotonic() + 60
+    while not (file.exists() and file.stat().st_size) and time.monotonic() < until:
+        time.sleep(0.05)
+    waiting.kill()
+    waiting.wait()
+    time.sleep(0.5)
+    counted = file.stat().st_size
+    time.sleep(1.0)
+    assert file.stat().st_size == counted > 0
+
+
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="limits of memory are those of Linux")
 def test_a_reader_that_needs_too_much_memory_is_ended(step, monkeypatch):
     monkeypatch.setattr(foreign, "MEMORY", 30_000_000)

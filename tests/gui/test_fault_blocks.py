@@ -7,10 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from faulted import ORIGIN, START, WAY, armed_site, faulted_site, off, throw
+from faulted import BOUNDARY, ORIGIN, START, WAY, armed_site, faulted_site, off, throw
 
 from geofit import FitSettings
 from geofit.data.site import Orientations
+from geofit.gui.panels.curtain import Curtain
+from geofit.gui.panels.section_painter import SectionData
 from geofit.io.project import open_project
 from geofit.project.building import make
 from geofit.project.commands import ExcludeRows, IncludeRows, SetSettings, SetSurface, SplitAtFaults
@@ -273,6 +275,33 @@ def test_fit_all_parts_fits_and_measures(app, caplog):
     app.window.fitting.fit("T2 (A)")
     app.idle()
     assert not any(document.stale(name) for name in document.horizons)
+
+
+def colours_shown(app):
+    """Return the colour of each horizon in the scene, the section and the plan."""
+    panels, document = app.window.panels, app.document
+    layers = {layer.horizon: layer.colour for layer in panels.view.layers if layer.kind == "points"}
+    site = document.site_in_use()
+    section = SectionData(site, Curtain.along(BOUNDARY[:2]), 50.0)
+    shown = {}
+    for name in document.horizons:
+        document.select(name)
+        app.idle()
+        shown[name] = {layers[name], section.colour(name), panels.plan.view.data.colour}
+    assert all(len(colours) == 1 for colours in shown.values())
+    return {name: colours.pop() for name, colours in shown.items()}
+
+
+def test_blocks_have_the_colour_of_their_horizon_and_the_others_keep_theirs(app, parted):
+    app.desktop.session.begin(faulted_site(), None)
+    app.idle()
+    before = colours_shown(app)
+    app.window.fitting.push(SplitAtFaults("T2", dict(parted.state.parts)))
+    app.idle()
+    assert colours_shown(app) == {**dict.fromkeys(BLOCKS, before["T2"]), "F1": before["F1"]}
+    app.window.session.stack.undo()
+    app.idle()
+    assert colours_shown(app) == before
 
 
 def test_the_report_of_the_window_tells_the_throw(parted, tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.gui.dialogs.order import OrderDialog
+from geofit.gui.dialogs.report import ReportDialog
 from geofit.project.building import make
 from geofit.project.commands import SetOrder
 from geofit.project.ordering import over_map
@@ -107,6 +109,46 @@ def test_an_order_that_was_checked_is_forgotten_with_another_order(crossing):
     assert not crossing.window.showing.orders
 
 
+def test_the_order_that_a_site_states_counts_wherever_its_files_list_the_horizons(app):
+    settings = FitSettings(core="none")
+    points = {"low": scattered(2, 0.0), "cut": scattered(3, 9.0), "up": scattered(1, 5.0)}
+    app.desktop.session.begin(Site("Dam", points, dict.fromkeys(points, settings), order=("up", "low")), None)
+    app.window.fitting.fit_all()
+    app.idle()
+    assert app.document.horizons == ("up", "cut", "low")
+    app.trigger("check_order")
+    app.idle()
+    (order,) = app.window.showing.orders
+    assert (order.upper, order.lower) == ("up", "low")
+    assert not order.crossings
+    before = dict(app.document.surfaces())
+    app.window.ordering.separate()
+    app.idle()
+    assert all(app.document.surface(name) is surface for name, surface in before.items())
+
+
+def test_a_report_compares_the_horizons_in_the_order_of_the_window_which_takes_over_what_it_finds(
+    crossing, write_report, tmp_path, monkeypatch
+):
+    document, showing = crossing.document, crossing.window.showing
+    monkeypatch.setattr(ReportDialog, "exec", lambda dialog: write_report(dialog, tmp_path, "json"))
+    crossing.desktop.session.begin(replace(document.site, order=("up", "low")), None)
+    crossing.window.fitting.fit_all()
+    crossing.idle()
+    assert showing.verdict("up").word == "PASS"
+    crossing.trigger("report")
+    crossing.idle()
+    written = json.loads((tmp_path / "report.json").read_text("utf-8"))["horizons"]
+    assert [one["verdict"] for one in written] == ["WARNING"] * 2
+    assert [showing.verdict(one["horizon"]).word for one in written] == ["WARNING"] * 2
+    assert str(showing.verdict("up").checks.text).endswith("order")
+    crossing.window.fitting.push(SetOrder(("low", "up")))
+    crossing.idle()
+    assert document.site_in_use().order == ("low", "up")
+    crossing.window.session.stack.undo()
+    assert document.site_in_use().order == ("up", "low")
+
+
 def test_the_order_is_changed_by_a_dialog_and_undone(crossing, monkeypatch):
     def drive(dialog):
         dialog.list.setCurrentRow(1)
@@ -140,6 +182,24 @@ def test_a_weight_is_set_by_hand_or_refused_with_a_reason(crossing, qtbot):
     qtbot.waitUntil(lambda: not crossing.window.activity.busy, timeout=60_000)
     assert isinstance(crossing.failures.pop(), FitError)
     assert document.surface("low").patches[0] is after
+
+
+def test_a_new_fit_reports_the_edits_that_it_drops(crossing, caplog):
+    window, document = crossing.window, crossing.document
+    patch = document.surface("low").patches[0]
+    window.fitting.weigh("low", patch.name, *(n // 2 for n in patch.control.shape[:2]), 3.0)
+    crossing.idle()
+    edited = document.surface("low")
+    window.fitting.fit_all()
+    crossing.idle()
+    words = "The new fit of low drops the edit made after the former fit. Undo brings it back."
+    assert document.surface("low") is not edited
+    assert window.statusBar().currentMessage() == words
+    assert words in caplog.text
+    window.session.stack.undo()
+    crossing.idle()
+    assert document.surface("low") is edited
+    assert not document.state.provenances["up"].edits
 
 
 def test_faults_are_left_out_of_the_order():

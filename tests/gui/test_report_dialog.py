@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 
 import pytest
 from panel_samples import FAULT, fitted, sample_site
@@ -10,6 +11,8 @@ from PySide6.QtCore import QDate, Qt
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QLabel, QMessageBox
 
+from geofit.data.progress import tell
+from geofit.gui.dialogs import report
 from geofit.gui.dialogs.report import ReportDialog
 from geofit.report.result import HorizonResult
 
@@ -141,3 +144,22 @@ def test_stop_writes_nothing(qtbot, tmp_path, opened_files):
     assert "Stopped" in dialog.message.text()
     assert not list(tmp_path.glob("out/report*"))
     assert not opened_files
+
+
+def test_stop_names_the_files_that_are_written_already(qtbot, tmp_path, opened_files, monkeypatch, here):
+    def write(*_, progress):
+        """Write the pages, as the report does before its PDF is laid out."""
+        (tmp_path / "report.html").write_text("pages")
+        while True:
+            tell(progress, "report", 0.95)
+            time.sleep(0.02)
+
+    monkeypatch.setattr(report, "write_report_files", write)
+    dialog = opened(qtbot)
+    dialog.folder.setText(str(tmp_path))
+    qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil((tmp_path / "report.html").exists)
+    qtbot.waitUntil(dialog.stop.isVisible)
+    press(qtbot, dialog, dialog.stop)
+    assert dialog.message.text() == "Stopped. Already written: report.html."
+    assert not dialog.view.isVisible()

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from chambers import chambers
 from PySide6.QtCore import QCoreApplication, QEvent, Qt, QTimer
-from PySide6.QtWidgets import QApplication, QDialogButtonBox, QLabel, QWidget
+from PySide6.QtWidgets import QApplication, QDialogButtonBox, QFileDialog, QLabel, QWidget
 
 from geofit.gui.dialogs.rock_volume import RockVolumeDialog
 from geofit.gui.help import Help
@@ -80,6 +80,33 @@ def test_results_of_other_values_are_marked_until_the_values_are_theirs_again(qt
     find(qtbot, rock_volume, edge=3)
     assert not rock_volume.old.isVisible()
     assert rock_volume.message.text() == said
+
+
+def test_a_folder_of_slices_is_opened_and_a_slice_alone_says_that_it_is_one(qtbot, rock_volume, tmp_path, monkeypatch):
+    image = pytest.importorskip("PIL.Image", reason="Pillow reads TIFF")
+    for k, values in enumerate(chambers()):
+        image.fromarray(values).save(tmp_path / f"slice_{k:03d}.tif")
+    read(qtbot, rock_volume, tmp_path / "slice_000.tif")
+    assert rock_volume.volume.values.shape == (1, *chambers().shape[1:])
+    assert "one slice" in rock_volume.message.text()
+    monkeypatch.setattr(QFileDialog, "getExistingDirectory", lambda *_: str(tmp_path))
+    before = rock_volume.volume
+    qtbot.mouseClick(rock_volume.folder_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: not rock_volume.running and rock_volume.volume is not before, timeout=30_000)
+    np.testing.assert_array_equal(rock_volume.volume.values, chambers())
+    assert "one slice" not in rock_volume.message.text()
+
+
+def test_a_volume_that_is_refused_is_named_while_the_former_stays_on_show(qtbot, rock_volume, tmp_path):
+    read(qtbot, rock_volume, labels(tmp_path / "rock.npy"))
+    values = chambers().astype(np.float32)
+    values[0] = np.nan
+    np.save(tmp_path / "holes.npy", values)
+    rock_volume.read(tmp_path / "holes.npy")
+    qtbot.waitUntil(lambda: not rock_volume.running, timeout=30_000)
+    assert rock_volume.message.text().startswith("holes.npy: ")
+    assert "NaN" in rock_volume.message.text()
+    assert rock_volume.volume.name == "rock.npy"
 
 
 @pytest.mark.parametrize("largest", [1e-6, 0.01, 1.0, 255.0, 40_000.0])

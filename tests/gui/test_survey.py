@@ -7,6 +7,7 @@ import threading
 
 import numpy as np
 import pytest
+from faulted import ORIGIN, faulted_site, truth
 from PySide6.QtCore import QMimeData, QPointF, Qt, QUrl
 from PySide6.QtGui import QDropEvent
 
@@ -287,7 +288,7 @@ def test_stop_leaves_the_centre_line(qtbot, dialog, tube, monkeypatch, here):
     qtbot.waitUntil(lambda: not dialog.running, timeout=20_000)
     assert dialog.run is None
     assert dialog.scene.shown == ("line", "stations")
-    assert "Stopped" in dialog.message.text()
+    assert dialog.message.text() == "Stopped. No body was made."
 
 
 @pytest.mark.parametrize("stage", ["adjust", "volume", "triangles", "strata"])
@@ -517,6 +518,29 @@ def test_a_dropped_survey_is_added_to_the_site_and_can_be_undone(app, sample, tu
     assert dict(app.document.state.bodies) == before
     dialog.close()
     assert app.window.surveys.dialog is None
+
+
+def test_passages_are_cut_by_the_strata_whose_blocks_are_one_and_not_by_a_steep_fault(app, tmp_path, here):
+    app.desktop.session.begin(faulted_site(), None)
+    app.window.fitting.fit_all()
+    app.idle()
+    assert app.document.horizons == ("T2 (A)", "T2 (B)", "F1")
+    # A shaft through each block, joined by a drive far below the horizon, which crosses the fault.
+    path, (x, y) = tmp_path / "shafts.csv", (float(ORIGIN[0]) + 300.0, float(ORIGIN[1]) + 500.0)
+    places = [(x, y, 1600.0), (x, y, 1300.0), (x + 600.0, y, 1300.0), (x + 600.0, y, 1600.0)]
+    path.write_text("x,y,z,radius\n" + "".join(f"{a},{b},{c},2\n" for a, b, c in places))
+    app.window.surveys.open(path)
+    dialog = app.window.surveys.dialog
+    rests(app.qtbot, dialog)
+    dialog.cut.click()
+    app.qtbot.waitUntil(lambda: not dialog.running and dialog.run.strata != (), timeout=60_000)
+    above, below, unknown = dialog.run.strata
+    assert (above.base, below.top) == ("T2", "T2")
+    heights = [truth(np.array([a]), np.array([y]))[0] for a in (x, x + 600.0)]
+    assert above.length == pytest.approx(3200.0 - sum(heights), abs=1.0)
+    assert unknown.length < 20.0, "where the fault has pulled the blocks apart"
+    assert below.length + unknown.length == pytest.approx(sum(heights) - 2600.0 + 600.0, abs=1.0)
+    dialog.close()
 
 
 def test_the_file_menu_opens_a_survey_without_closing_anything(app, loops, here, monkeypatch):

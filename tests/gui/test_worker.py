@@ -5,17 +5,20 @@ from __future__ import annotations
 import gc
 import os
 import signal
+import tempfile
 import threading
 import time
 import traceback
 import weakref
 from contextlib import suppress
 from multiprocessing.connection import Connection
+from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QObject
 
 from geofit.data.errors import FitError
+from geofit.data.files import replacing, unfinished_file
 from geofit.data.messages import message
 from geofit.data.progress import tell
 from geofit.gui import worker
@@ -63,6 +66,28 @@ def process_number(*, progress):
 
 def stuck(*, progress):
     time.sleep(600)
+
+
+def writing(path, *, progress):
+    """Be in the midst of a file, as most exports are for seconds."""
+    with replacing(path) as part:
+        part.write_text("half", encoding="utf-8")
+        tell(progress, "half", 0.5)
+        time.sleep(600)
+
+
+def reading(path, *, progress):
+    """Be in the midst of a CAD file, which a child of the process reads."""
+    with tempfile.TemporaryDirectory(dir=path.parent) as folder, unfinished_file(folder):
+        (Path(folder) / "result.npz").write_text("half", encoding="utf-8")
+        tell(progress, "half", 0.5)
+        time.sleep(600)
+
+
+def dying_in_the_midst(path, *, progress):
+    with replacing(path) as part:
+        part.write_text("half", encoding="utf-8")
+        os._exit(3)
 
 
 def dying(*, progress):
@@ -185,6 +210,23 @@ def test_cancel_ends_a_process_that_tells_nothing(owner, qtbot):
     with qtbot.waitSignal(task.ended, timeout=20_000):
         task.cancel()
     assert stopped == [1]
+
+
+@pytest.mark.parametrize("function", [writing, reading])
+def test_what_a_stopped_process_had_begun_is_removed(owner, qtbot, tmp_path, function):
+    task = worker.run_in_process(owner, function, tmp_path / "sheet.pdf")
+    qtbot.waitUntil(lambda: bool(list(tmp_path.iterdir())), timeout=60_000)
+    with qtbot.waitSignal(task.ended, timeout=20_000):
+        task.cancel()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_a_dying_process_had_begun_is_removed(owner, qtbot, tmp_path):
+    (tmp_path / "sheet.pdf").write_text("former")
+    task = worker.run_in_process(owner, dying_in_the_midst, tmp_path / "sheet.pdf")
+    with qtbot.waitSignal(task.ended, timeout=60_000):
+        pass
+    assert [(file.name, file.read_text()) for file in tmp_path.iterdir()] == [("sheet.pdf", "former")]
 
 
 def test_a_process_that_dies_says_so(owner, qtbot):

@@ -293,6 +293,19 @@ def test_a_row_names_one_point():
     assert Row("b.csv", 4).find(points) is None
 
 
+def test_the_order_that_a_site_states_is_that_of_its_horizons_and_follows_the_document():
+    points = PointSet(np.eye(3))
+    site = Site("dam", dict.fromkeys(("c", "W", "a", "b"), points), order=("a", "b", "c"))
+    document = Document()
+    document.open(site, None)
+    assert document.horizons == ("a", "W", "b", "c")
+    assert document.site_in_use().order == ("a", "b", "c")
+    assert document.site_in_use() is document.site_in_use()
+    SetOrder(("c", "W", "a", "b")).redo(document)
+    assert document.site_in_use().order == ("c", "a", "b")
+    assert list(document.site_in_use().horizons) == ["c", "W", "a", "b"]
+
+
 def test_excluded_rows_take_no_part():
     opened = document()
     heard = []

@@ -12,11 +12,13 @@ from fpdf import FPDF
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from results import examined, horizon
 
+from geofit.data.errors import MissingDependencyError
 from geofit.data.languages import EN, ZH
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.site import Ground, Hole, Section, Site
 from geofit.data.title_block import Revision, TitleBlock
-from geofit.report import fonts
+from geofit.report import fonts, scene
 from geofit.report.chapters import document
 from geofit.report.document import (
     Chapter,
@@ -322,6 +324,34 @@ def test_a_horizon_keeps_its_colour_in_a_report_of_some_horizons():
     cut = {"lower": [Profile("lower", np.array([[0.0, 1400.0], [1000.0, 1410.0]]))]}
     figure = draw_section(section_sheet(section, site, cut, "L"), section, site, cut, {})
     assert horizon_colours(site.horizons)["lower"] in [line.get_color() for line in figure.axes[0].lines]
+
+
+def test_blocks_of_a_horizon_have_its_colour_in_a_section():
+    section = Section("L", np.array([[0.0, 0.0], [1000.0, 0.0]]))
+    none = PointSet(np.zeros((0, 3)))
+    site = Site("dam", {"upper": none, "lower": none}, blocks={"upper (A)": "upper", "upper (B)": "upper"})
+    lines = {"upper (A)": ((0.0, 1400.0), (400.0, 1405.0)), "upper (B)": ((400.0, 1380.0), (1000.0, 1390.0))}
+    cut = {name: [Profile(name, np.array(line))] for name, line in lines.items()}
+    figure = draw_section(section_sheet(section, site, cut, "L"), section, site, cut, {})
+    shown = [line.get_color() for line in figure.axes[0].lines]
+    assert shown.count(horizon_colours(site.horizons)["upper"]) == 4, "each line above the ground and below it"
+    assert horizon_colours(site.horizons)["lower"] not in shown
+
+
+def test_a_horizon_has_its_colour_in_the_picture_of_a_report_of_some_horizons(monkeypatch):
+    drawn = []
+
+    def refuse(surfaces, colours, holes):
+        drawn.append(list(colours))
+        raise MissingDependencyError(message("test.text", "no display"))
+
+    monkeypatch.setattr(scene, "site_scene", refuse)
+    of = horizon(name="lower")
+    site = replace(of.site, horizons=dict.fromkeys(("upper", "lower"), of.surface.points))
+    draw_site([replace(of, site=site)])
+    block = replace(of.surface, name="lower (A)")
+    draw_site([replace(of, site=site, surface=block, horizon="lower")])
+    assert drawn == [[horizon_colours(site.horizons)["lower"]]] * 2
 
 
 def test_names_of_holes_at_the_ends_of_a_section_keep_clear_of_those_of_the_ends():
