@@ -22,6 +22,7 @@ from typing import Any, TypeVar
 from geofit.data.distribution import install_line
 from geofit.data.errors import MissingDependencyError, SchedulerError, SettingsError
 from geofit.data.messages import message
+from geofit.data.threads import one_thread
 from geofit.streaming.kept import keep, kept, kept_path
 
 __all__ = ["HERE", "WORKERS", "SchedulerError", "Where", "run_tasks"]
@@ -108,14 +109,14 @@ def _on_processes(work: Callable[[T], R], tasks: Sequence[T], count: int) -> Ite
     """Run tasks in processes; where one dies all are started anew, and what was under way is tried again."""
     left, tried = dict(enumerate(tasks)), [0] * len(tasks)
     while left:
-        pool = ProcessPoolExecutor(count, multiprocessing.get_context("spawn"), initializer=_one_thread)
+        pool = ProcessPoolExecutor(count, multiprocessing.get_context("spawn"))
         waiting = iter(list(left))
         running: dict[Future[R], int] = {}
         try:
             while True:
                 # Few tasks at a time: what has not begun is not counted as tried.
                 for k in itertools.islice(waiting, count + 1 - len(running)):
-                    running[pool.submit(work, left[k])] = k
+                    running[pool.submit(_alone, work, left[k])] = k
                 if not running:
                     break
                 done, _ = wait(running, return_when=FIRST_COMPLETED)
@@ -142,18 +143,20 @@ def _on_processes(work: Callable[[T], R], tasks: Sequence[T], count: int) -> Ite
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _one_thread() -> None:
-    """Keep each process to one thread: there are as many processes as processors."""
-    from threadpoolctl import threadpool_limits
+def _alone(work: Callable[[T], R], task: T) -> R:
+    """Work on one thread: there are as many processes as processors.
 
-    threadpool_limits(limits=1)
+    A limit set at the start of a process would not hold for libraries that it loads later, as scipy's own is.
+    """
+    with one_thread():
+        return work(task)
 
 
 def _on_dask(work: Callable[[T], R], tasks: Sequence[T], scheduler: str) -> Iterator[tuple[int, R]]:
     client, distributed = _client(scheduler)
     total = len(tasks)
     try:
-        futures = {k: client.submit(work, task, pure=False) for k, task in enumerate(tasks)}
+        futures = {k: client.submit(_alone, work, task, pure=False) for k, task in enumerate(tasks)}
         while futures:
             ready = [k for k, future in futures.items() if future.status in ("finished", "error")]
             for k in ready:

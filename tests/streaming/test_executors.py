@@ -26,6 +26,14 @@ def square(x):
     return x * x
 
 
+def most_threads(_):
+    """Return the threads that linear algebra may use, scipy's own library included, which is loaded only now."""
+    import scipy.linalg  # noqa: F401
+    from threadpoolctl import threadpool_info
+
+    return max(library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas")
+
+
 def dies_once(task):
     """Kill the worker's own process at the first try of one task."""
     k, folder = task
@@ -42,6 +50,13 @@ def always_dies(task):
 
 def fails(task):
     raise SettingsError(__import__("geofit.data.messages", fromlist=["message"]).message("x", "wrong"))
+
+
+@pytest.mark.skipif((os.cpu_count() or 1) < 2, reason="one processor has one thread")
+def test_a_worker_uses_one_thread_whatever_it_loads(monkeypatch):
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        monkeypatch.delenv(name, raising=False)
+    assert dict(run_tasks(most_threads, range(2), workers=2)) == {0: 1, 1: 1}
 
 
 @pytest.mark.parametrize("workers", [1, 2])
