@@ -92,11 +92,12 @@ def placement(origin: Floats) -> Any:
     return TopLoc_Location(move)
 
 
-def explore(shape: Any, kind: Any) -> Iterator[Any]:
-    """Walk over the parts of one kind (TopAbs_FACE, ...) in a shape."""
+def explore(shape: Any, kind: Any, outside: Any = None) -> Iterator[Any]:
+    """Walk over the parts of one kind (TopAbs_FACE, ...) in a shape, or those ``outside`` parts of another kind."""
+    from OCP.TopAbs import TopAbs_SHAPE
     from OCP.TopExp import TopExp_Explorer
 
-    explorer = TopExp_Explorer(shape, kind)
+    explorer = TopExp_Explorer(shape, kind, TopAbs_SHAPE if outside is None else outside)
     while explorer.More():
         yield explorer.Current()
         explorer.Next()

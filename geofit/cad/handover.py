@@ -64,8 +64,8 @@ def save_result(target: Path, surfaces: Mapping[str, PatchSurface | TriangleMesh
         ]
         loops = [[kept(loop) for loop in one] for one in surface.loops] if any(surface.loops) else None
         found.append(
-            {"name": name, "origin": kept(surface.origin), "outline": kept(surface.outline), "patches": patches}
-            | {"loops": loops}
+            {"name": name, "frame": surface.frame, "origin": kept(surface.origin), "outline": kept(surface.outline)}
+            | {"patches": patches, "loops": loops}
         )
     if not all(np.isfinite(array).all() for array in arrays):
         save_reason(target, reason=message("cad.not-finite", "The file has coordinates that are not finite numbers"))
@@ -139,9 +139,10 @@ def load_result(result: Path, source: Path) -> dict[str, Any]:
             )
             for patch in one["patches"]
         )
-        surface = PatchSurface(patches, array(one["origin"]), one["name"], array(one["outline"]))
+        given = patches, array(one["origin"]), one["name"], array(one["outline"]), one["frame"]
+        surface = PatchSurface(*given)
         if one["loops"] is not None:
             loops = tuple(tuple(array(loop) for loop in loops) for loops in one["loops"])
-            surface = TrimmedSurface(patches, surface.origin, surface.name, surface.outline, trim_loops=loops)
+            surface = TrimmedSurface(*given, trim_loops=loops)
         surfaces[surface.name] = surface
     return surfaces

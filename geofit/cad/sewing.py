@@ -1,4 +1,4 @@
-"""Patches to one OpenCASCADE shell (paper, sec. 3.3: after the check).
+"""Patches to one OpenCASCADE shell (paper, sec. 3.3: after the check); a fold that its outline cuts may be several.
 
 OpenCASCADE is imported inside the functions: it takes seconds to load.
 """
@@ -18,7 +18,7 @@ from geofit.geometry.seams import seams
 from geofit.surfaces.protocol import Surface
 
 if TYPE_CHECKING:
-    from cadquery import Shell
+    from cadquery import Compound, Shell
 
 __all__ = ["shell", "to_shape"]
 
@@ -31,8 +31,10 @@ SEWING = 1e-7
 TRIM = 1e-6
 
 
-def to_shape(surface: Surface) -> Shell:
+def to_shape(surface: Surface) -> Shell | Compound:
     """Return the patches as one sewn cadquery shell in map coordinates, trimmed to the outline.
+
+    The outline may cut a fold, or a surface over its best plane, into pieces: then a compound of shells.
 
     The geometry stays about the surface's local origin, which is carried as the shell's placement: the
     coordinates keep their digits.
@@ -44,15 +46,17 @@ def to_shape(surface: Surface) -> Shell:
         shell invalid.
     """
     import cadquery
+    from OCP.TopAbs import TopAbs_SHELL
 
-    return cadquery.Shell(shell(surface).Located(placement(surface.origin)))
+    sewn = shell(surface).Located(placement(surface.origin))
+    return cadquery.Shell(sewn) if sewn.ShapeType() == TopAbs_SHELL else cadquery.Compound(sewn)
 
 
 def shell(surface: Surface) -> Any:
-    """Return the sewn TopoDS_Shell in local coordinates; errors as :func:`to_shape`."""
+    """Return the sewn TopoDS_Shell, or a compound of several, in local coordinates; errors as :func:`to_shape`."""
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_Sewing
     from OCP.BRepCheck import BRepCheck_Analyzer
-    from OCP.TopAbs import TopAbs_SHELL
+    from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL
     from OCP.TopoDS import TopoDS
 
     if not surface.patches:
@@ -71,9 +75,9 @@ def shell(surface: Surface) -> Any:
             sewing.Add(face)
     sewing.Perform()
     sewn = sewing.SewedShape()
-    if outline is not None and not exact:
+    if cut := outline is not None and not exact:
         sewn = trimming.cut_along(sewn, outline)
-    if sewn.IsNull():
+    if sewn.IsNull() or not faces_of(sewn):
         raise StitchError(
             message(
                 "cad.outline-not-reached-at-all",
@@ -81,15 +85,13 @@ def shell(surface: Surface) -> Any:
                 name=surface.name,
             )
         )
-    faces = faces_of(sewn)
     shells = [TopoDS.Shell_s(part) for part in explore(sewn, TopAbs_SHELL)]
-    if len(faces) == 1 and not shells:
-        shells = [_shell_of(faces[0])]
-    if len(shells) != 1 or len(faces_of(shells[0])) != len(faces):
-        loose = len(faces) - sum(len(faces_of(part)) for part in shells)
-        raise StitchError(_why_open(surface, len(shells) + loose))
-    result = shells[0]
-    if (loops := free_loops(result)) != 1:
+    shells += [_shell_of(face) for face in explore(sewn, TopAbs_FACE, TopAbs_SHELL)]
+    # A fold may leave the study area and enter it again: in pieces, or with a hole where it bulges out of the area.
+    if len(shells) > 1 and not cut:
+        raise StitchError(_why_open(surface, len(shells)))
+    result = shells[0] if len(shells) == 1 else _compound_of(shells)
+    if (loops := free_loops(result)) != 1 and not (cut and loops > 1):
         raise StitchError(
             message(
                 "cad.shell-has-holes",
@@ -119,6 +121,17 @@ def _shell_of(face: Any) -> Any:
     result, builder = TopoDS_Shell(), BRep_Builder()
     builder.MakeShell(result)
     builder.Add(result, face)
+    return result
+
+
+def _compound_of(shells: list[Any]) -> Any:
+    from OCP.BRep import BRep_Builder
+    from OCP.TopoDS import TopoDS_Compound
+
+    result, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(result)
+    for part in shells:
+        builder.Add(result, part)
     return result
 
 

@@ -13,6 +13,7 @@ import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import chain
 from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
@@ -36,15 +37,15 @@ from geofit.cad.imported import (
 )
 from geofit.cad.read_back import read_back
 from geofit.cad.sewing import shell
-from geofit.cad.step_attributes import CONTINUED, attributes_of, with_attributes
+from geofit.cad.step_attributes import CONTINUED, attributes_of, stated_frame, stated_outline, with_attributes
 from geofit.cad.step_beyond import patches_beyond, with_patches_beyond
 from geofit.cad.step_origin import Origin, offset_attributes, offset_of, offset_words
 from geofit.cad.step_text import canonical, read_written
 from geofit.data.accuracy import ReadBack
 from geofit.data.columns import LARGEST
 from geofit.data.errors import InputError
-from geofit.data.files import cannot_write, replacing
-from geofit.data.legible import legible
+from geofit.data.files import cannot_write, replacing, unfinished_file
+from geofit.data.legible import legible, legible_keys
 from geofit.data.messages import message
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
@@ -114,6 +115,7 @@ def write_step(
     SettingsError
         If the origin is neither a known word nor three numbers.
     """
+    surfaces = legible_keys(surfaces)
     target, offset = Path(path), _offset(surfaces, origin)
     shells = store_step(surfaces, target, unit=unit, author=author, organisation=organisation, origin=offset)
     stated = offset_attributes(offset)
@@ -139,7 +141,7 @@ def store_step(
 
     Errors as :func:`write_step`.
     """
-    target = Path(path)
+    target, surfaces = Path(path), legible_keys(surfaces)
     if not surfaces:
         raise InputError(
             message("data.no-surface", "No surface to write"),
@@ -235,15 +237,25 @@ def _continues(shape: FileShape) -> bool:
 
 def _surface(shape: FileShape, beyond: Sequence[Patch]) -> PatchSurface:
     """Return a product's surface; where a fit continues beneath the loops with all its patches."""
+    frame = stated_frame(shape.attributes)
     if not _continues(shape):
-        return surface_of(shape)
-    surface = surface_of(shape, whole=True)
+        return replace(surface_of(shape), frame=frame)
+    surface = replace(surface_of(shape, whole=True), frame=frame)
     matrix, shift = transformation_of(shape.location)
-    if beyond and np.array_equal(matrix, np.eye(3)):
+    if np.array_equal(matrix, np.eye(3)):
         more = (replace(patch, control=patch.control + (shift - surface.origin)) for patch in beyond)
-        surface = replace(surface, patches=(*surface.patches, *more), outline=outline_of(shape))
+        outline = stated_outline(shape.attributes) if frame else outline_of(shape)
+        surface = replace(surface, patches=_once((*surface.patches, *more)), outline=outline)
     # Without an outline only the loops end the faces.
-    return surface_of(shape) if surface.outline is None else surface
+    return replace(surface_of(shape), frame=frame) if surface.outline is None else surface
+
+
+def _once(patches: Sequence[Patch]) -> tuple[Patch, ...]:
+    """Return patches without repetition: an outline may cut one into several faces."""
+    kept: dict[tuple[str, bytes], Patch] = {}
+    for patch in patches:
+        kept.setdefault((patch.name, patch.control.tobytes()), patch)
+    return tuple(kept.values())
 
 
 def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
@@ -373,30 +385,31 @@ def _save(
         raise cannot_write(error, target) from None
     os.close(handle)
     try:
-        with quiet():
-            writer = STEPCAFControl_Writer()
-            writer.SetNameMode(True)
-            writer.Transfer(document)
-            _name_faces(writer.ChangeWriter().Model(), face_names)
-            header = APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
-            header.SetName(TCollection_HAsciiString("horizons"))
-            header.SetTimeStamp(TCollection_HAsciiString(TIMESTAMP))
-            header.SetAuthorValue(1, TCollection_HAsciiString(signed[0]))
-            header.SetOrganizationValue(1, TCollection_HAsciiString(signed[1]))
-            header.SetOriginatingSystem(TCollection_HAsciiString(f"geofit {__version__}"))
-            if about:
-                header.SetDescriptionValue(1, TCollection_HAsciiString(about))
-            done = writer.Write(temporary) == IFSelect_RetDone
-        if not done:
-            raise InputError(
-                message("cad.disk-full", "The file cannot be written: the disk may be full"),
-                message("cad.make-room", "Make room, or name another folder."),
-                file=str(target),
-            )
-        with replacing(target) as part:
-            text = with_attributes(canonical(read_written(temporary)), attributes)
-            text = with_patches_beyond(text, beyond, metre)
-            part.write_text(text, "ascii", newline="\n")
+        with unfinished_file(temporary):
+            with quiet():
+                writer = STEPCAFControl_Writer()
+                writer.SetNameMode(True)
+                writer.Transfer(document)
+                _name_faces(writer.ChangeWriter().Model(), face_names)
+                header = APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
+                header.SetName(TCollection_HAsciiString("horizons"))
+                header.SetTimeStamp(TCollection_HAsciiString(TIMESTAMP))
+                header.SetAuthorValue(1, TCollection_HAsciiString(signed[0]))
+                header.SetOrganizationValue(1, TCollection_HAsciiString(signed[1]))
+                header.SetOriginatingSystem(TCollection_HAsciiString(f"geofit {__version__}"))
+                if about:
+                    header.SetDescriptionValue(1, TCollection_HAsciiString(about))
+                done = writer.Write(temporary) == IFSelect_RetDone
+            if not done:
+                raise InputError(
+                    message("cad.disk-full", "The file cannot be written: the disk may be full"),
+                    message("cad.make-room", "Make room, or name another folder."),
+                    file=str(target),
+                )
+            with replacing(target) as part:
+                text = with_attributes(canonical(read_written(temporary)), attributes)
+                text = with_patches_beyond(text, beyond, metre)
+                part.write_text(text, "ascii", newline="\n")
     except OSError as error:
         raise cannot_write(error, target) from None
     except ValueError:  # a text that was cut off in the middle
@@ -405,8 +418,6 @@ def _save(
             message("cad.make-room", "Make room, or name another folder."),
             file=str(target),
         ) from None
-    finally:
-        Path(temporary).unlink(missing_ok=True)
 
 
 def _name_faces(model: Any, names: Sequence[Sequence[str]]) -> None:
@@ -419,6 +430,6 @@ def _name_faces(model: Any, names: Sequence[Sequence[str]]) -> None:
 
     entities = (model.Value(k) for k in range(1, model.NbEntities() + 1))
     shells = [entity for entity in entities if isinstance(entity, StepShape_OpenShell)]
-    for entity, faces in zip(shells, names, strict=True):
-        for k, name in enumerate(faces, 1):
-            entity.CfsFacesValue(k).SetName(TCollection_HAsciiString(name))
+    faces = (shell.CfsFacesValue(k) for shell in shells for k in range(1, shell.NbCfsFaces() + 1))
+    for face, name in zip(faces, chain.from_iterable(names), strict=True):
+        face.SetName(TCollection_HAsciiString(name))

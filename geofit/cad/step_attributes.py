@@ -18,6 +18,7 @@ from geofit import __version__
 from geofit.cad.step_origin import OFFSET_KEYS
 from geofit.cad.step_text import products_of
 from geofit.data.accuracy import Accuracy
+from geofit.geometry.area import fault_of_area
 from geofit.implicit.closed_body import ClosedBody
 from geofit.surfaces.protocol import FittedSurface
 
@@ -28,13 +29,29 @@ __all__ = [
     "attributes_of",
     "attributes_of_body",
     "places_hash",
+    "stated_frame",
+    "stated_outline",
     "with_attributes",
 ]
 
+Floats = NDArray[np.float64]
+
 #: Names of the attributes, in the order of the file.
-KEYS = ("sigma_m", "epsilon_m", "largest_residual_m", "points", "data_sha256", "geofit_version", "beyond_loops")
+KEYS = (
+    "sigma_m",
+    "epsilon_m",
+    "largest_residual_m",
+    "points",
+    "data_sha256",
+    "geofit_version",
+    "frame",
+    "beyond_loops",
+    "outline",
+)
 #: What ``beyond_loops`` states of a fit that ends at an outline: its patches continue beneath the loops of the faces.
 CONTINUED = "continued"
+#: Frames that a file states: that a surface folds, or is upright, cannot be told from a mistake by its shape.
+STATED = ("best-plane", "sections")
 
 _ATTRIBUTE = """\
 #{0} = GENERAL_PROPERTY('user defined attribute','{key}','');
@@ -50,8 +67,13 @@ _LINES = 6
 def attributes_of(surface: FittedSurface) -> dict[str, str]:
     """Return the attributes of a fitted surface; without points or a check those of them are missing."""
     found, accuracy = {"geofit_version": __version__}, surface.accuracy
+    if surface.frame in STATED:
+        found["frame"] = surface.frame
     if surface.outline is not None and not any(surface.loops):
         found["beyond_loops"] = CONTINUED
+        if surface.frame in STATED:
+            # Of a height field it is the loop of the free edges.
+            found["outline"] = " ".join(f"{x:.7f},{y:.7f}" for x, y in surface.outline.tolist())
     if len(surface.points):
         found |= {"points": str(len(surface.points)), "data_sha256": places_hash(surface.points.xyz)}
     return _in_order(found, accuracy)
@@ -71,6 +93,23 @@ def _in_order(found: dict[str, str], accuracy: Accuracy | None) -> dict[str, str
         found["epsilon_m"] = f"{accuracy.epsilon:.6g}"
         found["largest_residual_m"] = f"{accuracy.max_abs:.6g}"
     return {key: found[key] for key in KEYS if key in found}
+
+
+def stated_frame(attributes: Mapping[str, str]) -> str:
+    """Return the frame that a product states, "" where it states none."""
+    frame = attributes.get("frame", "")
+    return frame if frame in STATED else ""
+
+
+def stated_outline(attributes: Mapping[str, str]) -> Floats | None:
+    """Return the outline (k, 2) that a product states, map coordinates; None where it states none that can be used."""
+    try:
+        corners = [[float(number) for number in corner.split(",")] for corner in attributes["outline"].split()]
+        outline = np.array(corners, dtype=np.float64)
+    except (KeyError, ValueError):
+        return None
+    usable = outline.ndim == 2 and outline.shape[1] == 2 and len(outline) >= 3 and np.isfinite(outline).all()
+    return outline if usable and fault_of_area(outline) is None else None
 
 
 def places_hash(xyz: NDArray[np.float64]) -> str:

@@ -45,13 +45,19 @@ def needed(surface: Surface, tolerance: float) -> Polygon | None:
     if is_height_field(surface):
         wider = outline.buffer(tolerance, join_style="mitre")
         return None if all(wider.covers(_quad(patch)) for patch in surface.patches) else outline
-    share = np.linspace(0, 1, 41)
     samples = []
     for patch in surface.patches:
-        u0, u1, v0, v1 = patch.domain
-        samples.append(patch.evaluate(u0 + share[:, None] * (u1 - u0), v0 + share * (v1 - v0))[..., :2].reshape(-1, 2))
+        u, v = (_places(knots) for knots in (patch.knots_u, patch.knots_v))
+        samples.append(patch.evaluate(u[:, None], v[None, :])[..., :2].reshape(-1, 2))
     shapely.prepare(outline)
     return None if shapely.dwithin(outline, shapely.points(np.concatenate(samples)), tolerance).all() else outline
+
+
+def _places(knots: Floats) -> Floats:
+    """Return parameters close enough to each other that what the patch does between them is seen."""
+    breaks = np.unique(knots)
+    pieces = max(4, -(-40 // (len(breaks) - 1)))
+    return np.interp(np.linspace(0, len(breaks) - 1, pieces * (len(breaks) - 1) + 1), np.arange(len(breaks)), breaks)
 
 
 def faces(patch: Patch, outline: Polygon) -> list[Any]:

@@ -46,7 +46,8 @@ def shape_checks(surface: FittedSurface, parts: Sequence[PatchLattice]) -> list[
     if len(surface.points) and np.ptp(surface.points.xyz[:, 2]) > 0:
         checks.append(_elevation_range(surface, parts))
     checks += _strip(surface, parts)
-    if surface.outline is not None:
+    if surface.outline is not None and surface.frame not in ("best-plane", "sections"):
+        # A fold or a steep surface need not lie over all of the area.
         checks.append(_area(surface))
     return checks
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.threads import one_thread
 from geofit.splines.patch import Patch
 from geofit.surfaces.protocol import FittedSurface
 
@@ -60,10 +61,9 @@ def equal_accuracy(surface: FittedSurface, tolerance: float) -> Storage:
     height = turned[unique, 2]
     facing = normals[unique] @ axes.T
     slope = -facing[:, :2] / facing[:, 2:]
-    from threadpoolctl import threadpool_limits
 
     # Qhull hands LAPACK one 2 x 2 matrix a triangle: starting threads for each costs a hundred times the work.
-    with threadpool_limits(limits=1):
+    with one_thread():
         return Storage(tolerance, _tin(plan, height, tolerance), _grid(plan, height, slope, tolerance))
 
 

@@ -51,16 +51,14 @@ def names_of(points: PointSet, rows: NDArray[np.intp]) -> tuple[Message | str, .
 class Problem:
     """What stays the same while a horizon's control points are fitted and adjusted.
 
-    ``kept`` (n,) marks the points that conflicts left; ``boundary`` (k, 2) is the study area in map coordinates;
-    ``outline`` (k, 2) is where the surface ends if that is not the study area: at faults. ``slopes`` are the measured
-    dips that the fit uses, in the frame. ``sources`` is the noise of the kinds of points that state none
-    (:mod:`geofit.fitting.sources`), metres. ``unit`` is what lengths are measured by, metres; None: the spacing of the
-    sparse points.
+    ``kept`` (n,) marks the points that conflicts left; ``outline`` (k, 2) is where the surface ends if that is not the
+    study area: at faults, map coordinates. ``slopes`` are the measured dips that the fit uses, in the frame.
+    ``sources`` is the noise of the kinds of points that state none (:mod:`geofit.fitting.sources`), metres. ``unit`` is
+    what lengths are measured by, metres; None: the spacing of the sparse points.
     """
 
     points: PointSet
     settings: FitSettings
-    boundary: Floats | None
     parametrization: Parametrization
     split: Split
     kept: NDArray[np.bool_]
@@ -177,7 +175,7 @@ class Model(Preparing):
     def patch_surface(self) -> PatchSurface:
         """Return the surface of the control net."""
         given, frame = self.problem, self.problem.parametrization.frame
-        outline = given.boundary if given.outline is None and frame.kind == "map" else given.outline
+        outline = given.parametrization.boundary if given.outline is None else given.outline
         return PatchSurface(self.patches(), frame.origin, given.name, outline, frame.kind)
 
     def figures(self) -> dict[str, Any]:

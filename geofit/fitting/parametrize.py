@@ -15,7 +15,7 @@ from scipy.spatial import KDTree
 
 from geofit.checks.outside import outside
 from geofit.data.errors import FitError
-from geofit.data.long_arrays import covariance
+from geofit.data.long_arrays import Rows, blocks, covariance
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
@@ -23,7 +23,7 @@ from geofit.fitting.fold import Loft, backtracking, loft
 from geofit.fitting.sections import section_labels
 from geofit.geometry.frame import Frame, best_plane_frame, map_frame, section_azimuth
 
-__all__ = ["STEEP", "Parametrization", "direction_of", "parametrize", "plan_box", "turns_over"]
+__all__ = ["STEEP", "Parametrization", "direction_of", "ends_at", "parametrize", "plan_box", "turns_over"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -41,6 +41,9 @@ ROW = 0.2
 #: Ratio of F by which heights must follow the places across a row before they show a dip there.
 SHOWN = 16.0
 
+
+#: Points within the study area that a surface needs to end there, if it is not a height field over the map.
+FEWEST = 3
 
 #: Share of the points at which a surface must turn over to be no height field over the map, and the cosine of its dip
 #: there, 93 degrees.
@@ -73,6 +76,8 @@ class Parametrization:
         Points whose place is known; the others are projected on the surface of these.
     section : (n,) array of str
         Section of each point, as named or as found; empty for the others.
+    boundary : (k, 2) array, optional
+        Corners of the study area where it ends the surface, map coordinates.
     """
 
     frame: Frame
@@ -82,6 +87,7 @@ class Parametrization:
     notes: tuple[Message, ...]
     parametrized: NDArray[np.bool_]
     section: NDArray[np.str_]
+    boundary: Floats | None = None
 
     @property
     def parametric(self) -> bool:
@@ -112,14 +118,15 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
         If "sections" is asked for and fewer than two sections are named.
     """
     kind, reason = _choose_kind(points, settings)
+    ended, lying_outside = _ended_by(boundary, points, kind)
+    notes = [reason, *lying_outside]
     if kind == "sections":
-        return _parametrize_over_sections(points, [reason, *_study_area_notes(points, boundary)])
+        return replace(_parametrize_over_sections(points, notes), boundary=ended)
     section = section_labels(points)
     upright = kind == "best-plane"
     frame = best_plane_frame(points) if upright else map_frame(points, direction_of(section, points, boundary))
     local = frame.to_local(points.xyz)
     area = plan_box(local[:, :2])
-    notes = [reason, *(_study_area_notes(points, boundary) if upright else ())]
     if section is not points.section and (section != "").any():
         lines = len(np.unique(section[section != ""]))
         notes.append(
@@ -127,35 +134,50 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
         )
     if boundary is not None and kind == "map":
         corners = frame.plan(boundary)
-        count = int(outside(boundary, points.xyz).sum())
-        if count:
-            notes.append(
-                message(
-                    "fitting.points-beyond-study-area",
-                    "points outside the study area: {count} of {total}; the surface is fitted to them and they count "
-                    "in sigma, but files of it end at the study area",
-                    count=count,
-                    total=len(points),
-                ).with_severity("warning")
-            )
         ends = [end(axis) for axis in local[:, :2].T for end in (np.min, np.max)]
         area = plan_box(np.concatenate([np.reshape(ends, (2, 2)).T, corners]))
     placed = np.ones(len(points), bool)
-    return Parametrization(frame, local[:, :2], local[:, 2], area, tuple(notes), placed, section)
+    return Parametrization(frame, local[:, :2], local[:, 2], area, tuple(notes), placed, section, ended)
 
 
-def _study_area_notes(points: PointSet, boundary: Floats | None) -> list[Message]:
-    """Return what to say of a study area that does not end the surface."""
+def ends_at(boundary: Floats, kind: str, xyz: Rows) -> bool:
+    """Whether a study area ends a surface in a kind of frame: over the map, or if enough points lie within the area.
+
+    A surface that the area barely meets would have no face left, and no file.
+    """
+    within = 0
+    for (part,) in blocks(xyz):
+        if kind == "map" or within >= FEWEST:
+            break
+        within += int((~outside(boundary, part)).sum())
+    return kind == "map" or within >= FEWEST
+
+
+def _ended_by(boundary: Floats | None, points: PointSet, kind: str) -> tuple[Floats | None, list[Message]]:
+    """Return the study area where it ends the surface, and a warning if points lie outside."""
     if boundary is None:
-        return []
-    count = int(outside(boundary, points.xyz).sum())
+        return None, []
+    count, total = int(outside(boundary, points.xyz).sum()), len(points)
+    if not ends_at(boundary, kind, points.xyz):
+        note = message(
+            "fitting.study-area-not-applied",
+            "the study area does not end this surface: points outside it: {count} of {total}; at least {least} inside "
+            "are needed",
+            count=count,
+            total=total,
+            least=FEWEST,
+        )
+        return None, [note.with_severity("warning")]
+    if not count:
+        return boundary, []
     note = message(
-        "fitting.study-area-not-applied",
-        "the study area is not applied: only height fields over the map end at it; points outside: {count} of {total}",
+        "fitting.points-beyond-study-area",
+        "points outside the study area: {count} of {total}; the surface is fitted to them and they count "
+        "in sigma, but files of it end at the study area",
         count=count,
-        total=len(points),
+        total=total,
     )
-    return [note.with_severity("warning") if count else note]
+    return boundary, [note.with_severity("warning")]
 
 
 def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]:

@@ -114,4 +114,4 @@ def posed(
     stage("fit", 0.2)
     slopes, notes = slopes_of(orientations, name, parametrization, settings)
     parametrization = replace(parametrization, notes=(*parametrization.notes, *lost, *notes))
-    return Problem(points, settings, corners, parametrization, split, kept, conflicts, name, slopes=slopes)
+    return Problem(points, settings, parametrization, split, kept, conflicts, name, slopes=slopes)

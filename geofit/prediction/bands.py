@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import NearestNDInterpolator
 from scipy.special import ndtri
-from threadpoolctl import threadpool_limits
 
 from geofit.data.columns import measurable_places
 from geofit.data.errors import FitError, SettingsError
@@ -18,6 +17,7 @@ from geofit.data.given import arguments_checked
 from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
 from geofit.data.prediction import PredictionResult, Uncertainty
+from geofit.data.threads import one_thread
 from geofit.fitting.calibration import Calibration, uncalibrated
 from geofit.fitting.conflicts import trust_of
 from geofit.fitting.horizon_fit import HorizonFit
@@ -131,11 +131,14 @@ def grid_over(surface: HorizonFit) -> Grid:
     plane = np.clip(plane, (u0, v0), (u1, v1))
     if parametrization.frame.kind != "map":
         within &= within_hull(parametrization.plane, plane)
-    if surface.outline is not None:
-        # The outline itself counts as inside.
-        middle = (low + high) / 2
-        within &= inside(surface.outline, middle + (nodes - middle) * (1 - 1e-9))
-    return Grid(x, y, within.reshape(len(y), len(x)), plane[within] / unit)
+    grid = Grid(x, y, within.reshape(len(y), len(x)), plane[within] / unit)
+    if surface.outline is None:
+        return grid
+    places = nodes[within] if parametrization.frame.kind == "map" else grid.places(model)[:, :2]
+    # The outline itself counts as inside.
+    middle = (surface.outline.min(axis=0) + surface.outline.max(axis=0)) / 2
+    kept = inside(surface.outline, middle + (places - middle) * (1 - 1e-9))
+    return Grid(x, y, grid.at_nodes(kept.astype(float)) == 1, grid.plane[kept])
 
 
 def uncertainty_on(grid: Grid, error_model: PredictionError) -> Uncertainty:
@@ -192,7 +195,7 @@ def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike,
                 )
             )
     places = _parameters(surface, model, measurable_places(xyz))
-    with threadpool_limits(limits=1):
+    with one_thread():
         return _sd(model, uncertainty, places, of)
 
 
@@ -266,7 +269,7 @@ def band(
         )
     model = _model(surface)
     space, factor = model.net.space, float(ndtri((1 + share) / 2))
-    with threadpool_limits(limits=1):
+    with one_thread():
         offset = from_abscissae(space, lambda plane: factor * _sd(model, uncertainty, plane, of))
     if model.net.coefficients.ndim == 2:
         up = searchable(surface.patches).upwards

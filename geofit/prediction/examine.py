@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from geofit.data.given import FIT, arguments_checked, require_kind
 from geofit.data.guard import guarded
 from geofit.data.messages import Message, message
 from geofit.data.prediction import LeftOut, Outlier, PredictionResult, SourceOffset, Suggestion, Uncertainty
 from geofit.data.progress import Progress, tell
+from geofit.data.threads import one_thread
 from geofit.data.verdict import LEAST_INSIDE
 from geofit.fitting.calibration import (
     Calibration,
@@ -105,7 +105,7 @@ def examine(
                 name=surface.name,
             )
         )
-    with threadpool_limits(limits=1):
+    with one_thread():
         notes: list[Message] = []
 
         def missing(reason: Message) -> None:

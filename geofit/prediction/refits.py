@@ -95,7 +95,13 @@ def sections_by_refit(
     tell(progress, "cross-validation", 0.0)
     tasks = [
         RefitFold(
-            points, group, surface.settings, model.problem.boundary, surface.name, model.net.field, model.net.unit
+            points,
+            group,
+            surface.settings,
+            model.problem.parametrization.boundary,
+            surface.name,
+            model.net.field,
+            model.net.unit,
         )
         for group in inner
     ]

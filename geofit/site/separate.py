@@ -16,13 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import block_array, block_diag, csc_array, csr_array, diags_array, eye_array, hstack, vstack
 from scipy.sparse.linalg import SuperLU, splu
-from threadpoolctl import threadpool_limits
 
 from geofit.data.columns import LARGEST
 from geofit.data.errors import SettingsError
 from geofit.data.given import FIT, arguments_checked, require_kind
 from geofit.data.messages import EMPTY, Message, message
 from geofit.data.progress import Progress, tell, within
+from geofit.data.threads import one_thread
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.site.height_field import HeightField
@@ -147,7 +147,7 @@ def separate_horizons(
             )
         )
     stack = _Stack([_Layer(surfaces[name]) for name in sequence], minimum)
-    with threadpool_limits(limits=1):
+    with one_thread():
         stack.separate(within(progress, 0.0, 0.9))
         tell(progress, "separate horizons", 0.9)
         result, moved = dict(surfaces), {}

@@ -13,7 +13,6 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.clip import inside
 from geofit.site.dips import check_dips
 from geofit.site.hole_contacts import check_holes
-from geofit.site.study_area import check_area
 from geofit.site.topography import check_ground
 
 __all__ = ["add_site_checks", "ground_tolerance", "measured_on"]
@@ -25,14 +24,14 @@ CELL_SHARE = 0.1
 
 
 def add_site_checks(surface: HorizonFit, site: Site, horizon: str = "") -> HorizonFit:
-    """Return a checked surface with further checks: whether it agrees with dips, study area, ground and holes.
+    """Return a checked surface with further checks: whether it agrees with dips, ground and holes.
 
     Parameters
     ----------
     surface : HorizonFit
         With its accuracy.
     site : Site
-        Its ``orientations`` that name the horizon, its ``boundary``, ``ground`` and ``holes``.
+        Its ``orientations`` that name the horizon, its ``ground`` and ``holes``.
     horizon : str
         Name of the horizon where the surface is one block of it: then the dips within the block's outline count.
     """
@@ -48,13 +47,6 @@ def add_site_checks(surface: HorizonFit, site: Site, horizon: str = "") -> Horiz
             None,
             lambda reason: missing.append(
                 message("site.dips-not-compared", "the dips were not compared: {reason}", reason=reason)
-            ),
-        ),
-        guarded(
-            lambda: check_area(surface, site.boundary, surface.name in site.faults),
-            None,
-            lambda reason: missing.append(
-                message("site.area-not-compared", "the study area was not compared: {reason}", reason=reason)
             ),
         ),
         guarded(

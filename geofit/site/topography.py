@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay
-from threadpoolctl import threadpool_limits
 
 from geofit.data.accuracy import Check
 from geofit.data.messages import message
 from geofit.data.site import Ground
+from geofit.data.threads import one_thread
 from geofit.fitting.horizon_fit import HorizonFit
 
 __all__ = ["check_ground"]
@@ -103,7 +103,7 @@ def _around(plan: Floats, own: Floats, depth: Floats) -> tuple[Floats, Floats]:
     """
     points, first = np.unique(own[:, :2], axis=0, return_index=True)
     # LAPACK starts threads even for matrices of two columns, which costs a hundred times the work.
-    with threadpool_limits(limits=1):
+    with one_thread():
         if len(points) < 3 or np.linalg.matrix_rank(points - points[0], tol=1e-6) < 2:
             return np.zeros(len(plan)), np.full(len(plan), np.nan)
         mesh = Delaunay(points - points[0])
@@ -120,11 +120,10 @@ def _around(plan: Floats, own: Floats, depth: Floats) -> tuple[Floats, Floats]:
 
 def _nodes(ground: Ground, surface: HorizonFit) -> tuple[Floats, Floats, float]:
     """Flat x, y of the ground's nodes over the surface, thinned if there are many, and the area of each."""
-    if surface.outline is not None:
-        box = surface.outline
-    else:
-        box = np.concatenate([patch.control[..., :2].reshape(-1, 2) for patch in surface.patches]) + surface.origin[:2]
+    box = np.concatenate([patch.control[..., :2].reshape(-1, 2) for patch in surface.patches]) + surface.origin[:2]
     low, high = box.min(axis=0), box.max(axis=0)
+    if surface.outline is not None:
+        low, high = np.maximum(low, surface.outline.min(axis=0)), np.minimum(high, surface.outline.max(axis=0))
     x = ground.x[(ground.x >= low[0]) & (ground.x <= high[0])]
     y = ground.y[(ground.y >= low[1]) & (ground.y <= high[1])]
     step = max(1, int(np.ceil(np.sqrt(len(x) * len(y) / PLACES))))

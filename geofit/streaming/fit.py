@@ -15,7 +15,6 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from threadpoolctl import threadpool_limits
 
 from geofit.data.columns import LARGEST
 from geofit.data.errors import FitError, PointsError
@@ -26,11 +25,12 @@ from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
+from geofit.data.threads import one_thread
 from geofit.fitting.active_points import Data
 from geofit.fitting.assemble import patches_of
 from geofit.fitting.caps import cap_for
 from geofit.fitting.field import FieldChoice, plane_trend
-from geofit.fitting.parametrize import STEEP, direction_of, plan_box
+from geofit.fitting.parametrize import STEEP, direction_of, ends_at, plan_box
 from geofit.fitting.request import study_area_of
 from geofit.fitting.resolution import choose_field
 from geofit.geometry.frame import Frame, map_frame, plane_axes
@@ -124,7 +124,7 @@ def fit_cloud(
     settings = settings or FitSettings()
     rows: Rows = xyz if isinstance(xyz, LongArray) else np.asarray(xyz, np.float64)
     corners, scratch = study_area_of(boundary), None if folder is None else folder_for(folder)
-    with threadpool_limits(limits=1), tempfile.TemporaryDirectory(dir=scratch, prefix="cloud-") as temporary:
+    with one_thread(), tempfile.TemporaryDirectory(dir=scratch, prefix="cloud-") as temporary:
         return _fit_cloud(rows, settings, corners, progress, name, Path(temporary))
 
 
@@ -144,7 +144,7 @@ def _fit_cloud(
     start = data.smoothed(space, field)
     coefficients = start.coefficients + data.over_trend(space)
     patches = patches_of(space, coefficients, None, frame, data.unit)
-    outline = boundary if frame.kind == "map" else None
+    outline = boundary if boundary is not None and ends_at(boundary, frame.kind, xyz) else None
     surface = PatchSurface(patches, frame.origin, name, outline, frame.kind)
     clock.stop()
     tell(progress, "done", 1.0)

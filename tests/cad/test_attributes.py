@@ -68,7 +68,7 @@ def test_each_product_has_its_own_figures(surfaces, tmp_path, unit):
     shapes = read_shapes(tmp_path / "dam.step")
     assert [shape.name for shape in shapes] == list(surfaces)
     for shape, (name, one) in zip(shapes, surfaces.items(), strict=True):
-        assert [*shape.attributes, "beyond_loops"] == list(KEYS)
+        assert [*shape.attributes, "frame", "beyond_loops", "outline"] == list(KEYS)
         assert float(shape.attributes["sigma_m"]) == pytest.approx(one.accuracy.sigma, rel=1e-5)
         assert float(shape.attributes["epsilon_m"]) == one.settings.epsilon
         assert float(shape.attributes["largest_residual_m"]) == pytest.approx(one.accuracy.max_abs, rel=1e-5)

@@ -65,7 +65,7 @@ def test_all_checks_are_silent_on_the_clean_sample(sample_surfaces, name):
     accuracy = sample_surfaces[name].accuracy
     assert failing(accuracy) == set()
     assert set(named(accuracy)) >= ALWAYS
-    assert ("area" in named(accuracy)) == (sample_surfaces[name].outline is not None)
+    assert ("area" in named(accuracy)) == (sample_surfaces[name].frame == "map")
 
 
 @pytest.mark.parametrize("seed", range(0, 16, 3))
