@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from refusals import refused
 from surfaces import ORIGIN, fold, height_field, horizon, nine
 
 from geofit.cad.step import write_step
@@ -103,7 +104,7 @@ def test_grid_settings_are_checked(options, match, both, tmp_path):
 
 
 def test_horizons_apart_have_no_thickness(upper, lower):
-    with pytest.raises(SettingsError, match="no thickness"):
+    with refused(SettingsError, "sampling.horizons-not-overlapping"):
         thickness_grid(upper, lower.with_(origin=lower.origin + np.array([5000.0, 0, 0])))
 
 
