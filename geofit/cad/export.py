@@ -11,7 +11,7 @@ from io import BytesIO
 from os import PathLike
 from typing import Any
 
-from geofit.cad.faces import placement
+from geofit.cad.faces import compound_of, placement
 from geofit.cad.iges_names import iges_labels, iges_names
 from geofit.cad.sewing import shell
 from geofit.data.errors import InputError
@@ -37,14 +37,10 @@ def write_brep(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> No
     InputError
         If there is no surface or the file cannot be written.
     """
-    from OCP.BRep import BRep_Builder
     from OCP.BRepTools import BRepTools
-    from OCP.TopoDS import TopoDS_Compound
 
-    compound, builder = TopoDS_Compound(), BRep_Builder()
-    builder.MakeCompound(compound)
-    for surface in _given(surfaces, path).values():
-        builder.Add(compound, shell(surface).Located(placement(surface.origin)))
+    given = _given(surfaces, path).values()
+    compound = compound_of(shell(surface).Located(placement(surface.origin)) for surface in given)
     with replacing(path) as part:
         if not BRepTools.Write_s(compound, str(part)):
             raise InputError(

@@ -7,7 +7,7 @@ OpenCASCADE is imported inside the functions: it takes seconds to load. Its shap
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from geofit.splines.patch import Patch
 
 __all__ = [
+    "compound_of",
     "edge_places",
     "edges_with_faces",
     "explore",
@@ -90,6 +91,18 @@ def placement(origin: Floats) -> Any:
     move = gp_Trsf()
     move.SetTranslation(gp_Vec(*(float(c) for c in origin)))
     return TopLoc_Location(move)
+
+
+def compound_of(shapes: Iterable[Any]) -> Any:
+    """Return a TopoDS_Compound of shapes, in order."""
+    from OCP.BRep import BRep_Builder
+    from OCP.TopoDS import TopoDS_Compound
+
+    result, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(result)
+    for shape in shapes:
+        builder.Add(result, shape)
+    return result
 
 
 def explore(shape: Any, kind: Any, outside: Any = None) -> Iterator[Any]:

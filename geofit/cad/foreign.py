@@ -106,7 +106,7 @@ def _run(command: Sequence[str], seconds: float) -> int:
 
 
 def _end_with_caller() -> None:
-    """End this process when the one that waits for it has ended: then nobody wants the result, or sweeps the folder."""
+    """End this process once its caller has ended: no one is left to use the result or remove the folder."""
 
     def watch() -> None:
         # The caller writes nothing, and the system closes its end. Not sys.stdin: its lock would be held at the end.

@@ -10,9 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from os import PathLike
-from typing import Any
 
-from geofit.cad.faces import faces_of
+from geofit.cad.faces import compound_of, faces_of
 from geofit.cad.foreign import read_in_child
 from geofit.cad.imported import FileShape, empty_document, existing, no_faces, products, quiet, surface_of, unique_name
 from geofit.data.messages import message
@@ -164,13 +163,7 @@ def _sewn(shape: FileShape) -> FileShape:
 
 
 def _compound(name: str, shapes: list[FileShape]) -> FileShape:
-    from OCP.BRep import BRep_Builder
     from OCP.TopLoc import TopLoc_Location
-    from OCP.TopoDS import TopoDS_Compound
 
-    compound: Any = TopoDS_Compound()
-    builder = BRep_Builder()
-    builder.MakeCompound(compound)
-    for shape in shapes:
-        builder.Add(compound, shape.shape.Located(shape.location))
+    compound = compound_of(shape.shape.Located(shape.location) for shape in shapes)
     return FileShape(name, compound, TopLoc_Location(), tuple(f"face {k}" for k in range(1, len(shapes) + 1)))

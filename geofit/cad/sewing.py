@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.cad import trimming
-from geofit.cad.faces import explore, faces_of, free_loops, placement, to_geom
+from geofit.cad.faces import compound_of, explore, faces_of, free_loops, placement, to_geom
 from geofit.data.errors import StitchError
 from geofit.data.messages import Message, message
 from geofit.geometry.seams import seams
@@ -90,7 +90,7 @@ def shell(surface: Surface) -> Any:
     # A fold may leave the study area and enter it again: in pieces, or with a hole where it bulges out of the area.
     if len(shells) > 1 and not cut:
         raise StitchError(_why_open(surface, len(shells)))
-    result = shells[0] if len(shells) == 1 else _compound_of(shells)
+    result = shells[0] if len(shells) == 1 else compound_of(shells)
     if (loops := free_loops(result)) != 1 and not (cut and loops > 1):
         raise StitchError(
             message(
@@ -121,17 +121,6 @@ def _shell_of(face: Any) -> Any:
     result, builder = TopoDS_Shell(), BRep_Builder()
     builder.MakeShell(result)
     builder.Add(result, face)
-    return result
-
-
-def _compound_of(shells: list[Any]) -> Any:
-    from OCP.BRep import BRep_Builder
-    from OCP.TopoDS import TopoDS_Compound
-
-    result, builder = TopoDS_Compound(), BRep_Builder()
-    builder.MakeCompound(result)
-    for part in shells:
-        builder.Add(result, part)
     return result
 
 

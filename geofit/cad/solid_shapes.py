@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.cad.faces import explore, faces_of, free_edges, from_geom, to_geom
+from geofit.cad.faces import compound_of, explore, faces_of, free_edges, from_geom, to_geom
 from geofit.data.errors import StitchError
 from geofit.data.messages import message
 from geofit.implicit.mesh import TriangleMesh
@@ -69,7 +69,7 @@ def triangle_solid(mesh: TriangleMesh) -> Any:
     from OCP.BRep import BRep_Builder
     from OCP.gp import gp_Pnt
     from OCP.Poly import Poly_Triangle, Poly_Triangulation
-    from OCP.TopoDS import TopoDS_Compound, TopoDS_Face, TopoDS_Shell, TopoDS_Solid
+    from OCP.TopoDS import TopoDS_Face, TopoDS_Shell, TopoDS_Solid
 
     if not mesh.is_closed:
         raise StitchError(
@@ -80,7 +80,7 @@ def triangle_solid(mesh: TriangleMesh) -> Any:
             )
         )
     builder = BRep_Builder()
-    compound, solids = TopoDS_Compound(), []
+    solids = []
     for part in mesh.split():
         triangulation = Poly_Triangulation(len(part.vertices), len(part.triangles), False)
         for k, vertex in enumerate(part.vertices.tolist(), 1):
@@ -95,17 +95,12 @@ def triangle_solid(mesh: TriangleMesh) -> Any:
         builder.MakeSolid(solid)
         builder.Add(solid, shell)
         solids.append(solid)
-    builder.MakeCompound(compound)
-    for solid in solids:
-        builder.Add(compound, solid)
-    return compound
+    return compound_of(solids)
 
 
 def _solids(shells: Sequence[Any]) -> Any:
-    from OCP.BRep import BRep_Builder
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid
     from OCP.BRepCheck import BRepCheck_Analyzer
-    from OCP.TopoDS import TopoDS_Compound
 
     makers, boxes, cavities = [], [], []
     for shell in shells:
@@ -125,13 +120,7 @@ def _solids(shells: Sequence[Any]) -> Any:
             )
         makers[min(around, key=lambda k: float((boxes[k][1] - boxes[k][0]).prod()))].Add(shell)
     solids = [maker.Solid() for maker in makers]
-    if len(solids) == 1:
-        result = solids[0]
-    else:
-        result, builder = TopoDS_Compound(), BRep_Builder()
-        builder.MakeCompound(result)
-        for solid in solids:
-            builder.Add(result, solid)
+    result = solids[0] if len(solids) == 1 else compound_of(solids)
     if not BRepCheck_Analyzer(result).IsValid():
         raise StitchError(
             message(

@@ -50,7 +50,7 @@ KEYS = (
 )
 #: What ``beyond_loops`` states of a fit that ends at an outline: its patches continue beneath the loops of the faces.
 CONTINUED = "continued"
-#: Frames that a file states: that a surface folds, or is upright, cannot be told from a mistake by its shape.
+#: Frames that a file states: the shape alone does not show whether a fold, or an upright surface, is meant.
 STATED = ("best-plane", "sections")
 
 _ATTRIBUTE = """\

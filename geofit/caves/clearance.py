@@ -152,7 +152,7 @@ def _thin_walls(body: PassageBody, spacing: float) -> Floats:
         way = sweeps.length[k] * t * sweeps.along[k] + right * sweeps.right[k] + up * sweeps.up[k]
         parts.append((sweeps.origin[k] + way).reshape(-1, 3))
     points = np.concatenate(parts)
-    # Where another passage is, there is no wall.
+    # A point inside another passage is not on a wall.
     return np.asarray(points[body.value(points) > -(body.blend / 4 + 1e-6)])
 
 

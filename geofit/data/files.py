@@ -36,7 +36,7 @@ _RESERVED = {"con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt
 _LONGEST = 150
 #: Files that the run in progress reads; None outside a run: a window may save what it opened.
 _INPUTS: ContextVar[set[Path] | None] = ContextVar("inputs", default=None)
-#: Who hears of files that are not whole yet; nobody, as a rule.
+#: Called for each file that is begun and finished; usually empty.
 _LISTENERS: list[Callable[[Path, bool], object]] = []
 
 

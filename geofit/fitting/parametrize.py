@@ -40,11 +40,8 @@ OVERTURNED = 0.02
 ROW = 0.2
 #: Ratio of F by which heights must follow the places across a row before they show a dip there.
 SHOWN = 16.0
-
-
 #: Points within the study area that a surface needs to end there, if it is not a height field over the map.
 FEWEST = 3
-
 #: Share of the points at which a surface must turn over to be no height field over the map, and the cosine of its dip
 #: there, 93 degrees.
 TURNED, PAST_VERTICAL = 0.05, -0.05

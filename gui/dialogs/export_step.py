@@ -275,7 +275,7 @@ class ExportDialog(TaskDialog):
         header.setSectionResizeMode(header.count() - 1, QHeaderView.ResizeMode.Stretch)
 
     def _stopped(self, files: list[Path]) -> None:
-        """Sweep away what the ended process left half written, and processes that nobody swept up after."""
+        """Remove the unfinished files of the process that was stopped, and of any earlier one that crashed."""
         for folder in {file.parent for file in files}:
             for pattern in (".geofit-????????.step", ".????????.part.step"):
                 for rest in folder.glob(pattern):

@@ -11,7 +11,7 @@ import pytest
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.cad.imported import surface_of
 from geofit.cad.step import read_shapes, read_step, write_step
-from geofit.cad.step_attributes import KEYS, attributes_of, with_attributes
+from geofit.cad.step_attributes import KEYS, attributes_of, stated_frame, stated_outline, with_attributes
 from geofit.data.languages import EN
 from geofit.fitting.judge import judge
 from geofit.project.step_files import Signed, write_step_files
@@ -60,6 +60,16 @@ def test_only_a_fit_that_ends_at_an_outline_goes_on_beneath_its_loops(tmp_path):
     assert "beyond_loops" not in again.attributes
     (back,) = read_step(tmp_path / "again.step").values()
     assert judge(back, points).accuracy.sigma == pytest.approx(cut.accuracy.sigma, rel=1e-4)
+
+
+def test_frame_and_outline_of_a_fold_are_read_as_written_or_not_at_all():
+    outline = np.array([[0.25, 0.0], [40.0, 0.0], [40.0, 30.0]]) + ORIGIN[:2]
+    text = " ".join(f"{x:.7f},{y:.7f}" for x, y in outline)
+    assert np.array_equal(stated_outline({"outline": text}), outline)
+    for wrong in ("", "1,2 3", "1,2 3,4", "nan,0 1,0 1,1", "0,0 1,0 2,0", "0,0 1,1 1,0 0,1", "a,b"):
+        assert stated_outline({"outline": wrong}) is None
+    assert stated_outline({}) is None
+    assert [stated_frame({"frame": word}) for word in ("sections", "map", "x")] == ["sections", "", ""]
 
 
 @pytest.mark.parametrize("unit", ["m", "mm"])
