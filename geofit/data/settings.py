@@ -41,8 +41,9 @@ class FitSettings:
         Region that is interpolated exactly: found by density, unless its points do not support each other within
         epsilon; every point; no point; or the rectangle around a polygon in map coordinates. A core is bounded by
         parameter lines, so the rectangle runs along the surface's frame (along the sections where most run one way,
-        else east and north), whatever way the polygon's sides run; a side goes on to the edge of the study area where
-        the strip between them is narrow and holds next to no points. ``surface.partition`` has its corners.
+        else along a tilted study area or, without one, a tilted strip of points, else east and north), whatever way
+        the polygon's sides run; a side goes on to the edge of the study area where the strip between them is narrow
+        and holds next to no points. ``surface.partition`` has its corners.
     frame : {"auto", "map", "best-plane", "sections"}
         Whether the surface is a height field over the map, over its best plane (steep faults), or a
         parametric surface through ordered section lines (overturned folds).

@@ -20,6 +20,9 @@ NEIGHBOURS = 8
 #: How many times denser than the rest a core must be, points an area; few points need more, since chance
 #: alone makes small clusters: CONTRAST + 10 / sqrt(points of the core).
 CONTRAST = 2.0
+#: Cells along the side of a square as large as the area, by which the part of it that points fill is measured, and how
+#: many times: the spacing of the points follows from that part.
+CELLS, ROUNDS = 96, 4
 #: Fewer points than these make no core worth a patch of its own.
 FEWEST = 20
 #: More points than these are not interpolated without being asked: they outnumber any sensible control net.
@@ -86,7 +89,7 @@ def split_auto(plane: Floats, area: Rectangle, drawn: NDArray[np.bool_] | None =
         return _uniform(plane, area, message("fitting.dense-points-fill-area", "the dense points fill the area"))
     if inside.sum() > MOST:
         return split_none(plane, _too_many(int(inside.sum())))
-    contrast = _density(inside.sum(), core) / _density((~inside).sum(), area, core)
+    contrast = inside.sum() / _size(core) * _filled(plane[~inside], area, core) / (~inside).sum()
     if contrast < CONTRAST + 10 / np.sqrt(inside.sum()):
         words = message(
             "fitting.densest-part-too-sparse",
@@ -188,8 +191,31 @@ def _trimmed_box(plane: Floats, width: float) -> tuple[Floats, Floats]:
     return low, high
 
 
-def _density(count: int, area: Rectangle, hole: Rectangle | None = None) -> float:
-    size = (area[1] - area[0]) * (area[3] - area[2])
-    if hole is not None:
-        size -= (hole[1] - hole[0]) * (hole[3] - hole[2])
-    return float(count) / max(size, 1e-9)
+def _size(rectangle: Rectangle) -> float:
+    return max((rectangle[1] - rectangle[0]) * (rectangle[3] - rectangle[2]), 1e-9)
+
+
+def _filled(plane: Floats, area: Rectangle, core: Rectangle) -> float:
+    """Return how much of the area around a core (n, 2) points fill, square metres.
+
+    What lies within a spacing of them or between them; where a circle with a radius of two spacings has room, it is
+    empty. Of holes along a river or on two sides of a hill, the area's corners say nothing of how dense they are.
+    """
+    from scipy.ndimage import distance_transform_edt
+
+    low, extent = np.array([area[0], area[2]]), np.array([area[1] - area[0], area[3] - area[2]])
+    cell = np.sqrt(_size(area)) / CELLS
+    count = np.maximum(np.ceil(extent / cell).astype(int), 1)
+    u, v = (start + cell * (np.arange(k) + 0.5) for start, k in zip(low, count, strict=True))
+    around = ~in_rectangle(np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2), core).reshape(count)
+    row, column = np.clip((plane - low) / cell, 0, count - 1).astype(int).T
+    filled = float(around.sum())
+    for _ in range(ROUNDS):
+        spacing = np.sqrt(filled / len(plane))
+        margin = int(2 * spacing) + 2
+        empty = np.ones(count + 2 * margin, bool)
+        empty[row + margin, column + margin] = False
+        near = distance_transform_edt(empty) <= 2 * spacing
+        inner = distance_transform_edt(near)[margin:-margin, margin:-margin] > spacing
+        filled = max(float((inner & around).sum()), 1.0)
+    return float(filled * cell**2)

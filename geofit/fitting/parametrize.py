@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
+from scipy.spatial import ConvexHull, KDTree, QhullError
 
 from geofit.checks.outside import outside
 from geofit.data.errors import FitError
@@ -40,6 +40,9 @@ OVERTURNED = 0.02
 ROW = 0.2
 #: Ratio of F by which heights must follow the places across a row before they show a dip there.
 SHOWN = 16.0
+#: The surface's axes turn along a side of the study area, or of the points' hull, where the rectangle there has less
+#: than this share of the area of the one along the map's axes. Chance alone tilts fewer points than the last number.
+TILTED_AREA, TILTED_POINTS, TILTED_ENOUGH = 0.8, 0.6, 10
 #: Points within the study area that a surface needs to end there, if it is not a height field over the map.
 FEWEST = 3
 #: Share of the points at which a surface must turn over to be no height field over the map, and the cosine of its dip
@@ -121,7 +124,7 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
         return replace(_parametrize_over_sections(points, notes), boundary=ended)
     section = section_labels(points)
     upright = kind == "best-plane"
-    frame = best_plane_frame(points) if upright else map_frame(points, direction_of(section, points, boundary))
+    frame = best_plane_frame(points) if upright else map_frame(points, direction_of(section, points.xyz, boundary))
     local = frame.to_local(points.xyz)
     area = plan_box(local[:, :2])
     if section is not points.section and (section != "").any():
@@ -290,21 +293,32 @@ def _upright(points: PointSet) -> bool:
     return bool(explained * (len(xyz) - 3) > SHOWN * left)
 
 
-def direction_of(section: NDArray[np.str_], points: PointSet, boundary: Floats | None) -> float | None:
-    """Return the direction of v: along the sections, else along a tilted study area's longer side."""
-    along = section_azimuth(points.xyz[:, :2], section)
-    if along is not None or boundary is None or len(boundary) < 3:
+def direction_of(section: NDArray[np.str_], xyz: Rows, boundary: Floats | None) -> float | None:
+    """Return the direction of v: along the sections, else along a side of a tilted study area, or of tilted points."""
+    along = section_azimuth(xyz[:, :2], section)
+    if along is not None or (boundary is None and len(xyz) < TILTED_ENOUGH):
         return along
-    best, angle = np.prod(np.ptp(boundary, axis=0)), None
-    for first, second in zip(boundary, np.roll(boundary, -1, axis=0), strict=True):
+    corners, most = (_hull(xyz), TILTED_POINTS) if boundary is None else (boundary, TILTED_AREA)
+    best, angle = most * np.prod(np.ptp(corners, axis=0)), None
+    for first, second in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         side = second - first
         if not side.any():
             continue
         c, s = side / np.hypot(*side)
-        size = np.prod(np.ptp(boundary @ np.array([[c, -s], [s, c]]), axis=0))
-        if size < 0.8 * best:
+        size = np.prod(np.ptp(corners @ np.array([[c, -s], [s, c]]), axis=0))
+        if size < best:
             best, angle = size, float(np.arctan2(s, c))
     return angle
+
+
+def _hull(xyz: Rows) -> Floats:
+    """Return the corners of the convex hull of points in plan, of a part of them where they are many."""
+    plan = np.asarray(xyz[:: -(-len(xyz) // LOOKED_AT)])[:, :2]
+    try:
+        return plan[ConvexHull(plan).vertices]
+    except QhullError:
+        # Points in a row, or at one location: its ends.
+        return plan[np.lexsort(plan.T)[[0, -1]]]
 
 
 def _parametrize_over_sections(points: PointSet, notes: Sequence[Message]) -> Parametrization:

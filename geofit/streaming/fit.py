@@ -230,7 +230,7 @@ def _frame(xyz: Rows, low: Floats, high: Floats, settings: FitSettings, boundary
         )
     if kind == "best-plane" or (kind == "auto" and dip >= STEEP):
         return Frame(map_frame(ends).origin, axes, "best-plane")
-    return map_frame(ends, direction_of(np.empty(0, np.str_), ends[:0], boundary))
+    return map_frame(ends, direction_of(np.empty(0, np.str_), xyz, boundary))
 
 
 def _gather(local: LongArray, frame: Frame, boundary: Floats | None) -> Data:

@@ -160,6 +160,53 @@ def test_without_sections_v_follows_a_turned_study_area():
     np.testing.assert_allclose(sides, [300, 900], atol=1)
 
 
+def valley(azimuth, n=60, length=1800.0, width=250.0, seed=3):
+    """Places of holes along a valley that runs at an angle from east, degrees."""
+    a = np.radians(azimuth)
+    turn = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    return np.random.default_rng(seed).uniform(-0.5, 0.5, (n, 2)) * (length, width) @ turn.T
+
+
+@pytest.mark.parametrize("azimuth", [20, 45, 110, 160])
+def test_without_sections_or_a_study_area_v_follows_holes_along_a_valley(azimuth):
+    plan = valley(azimuth) + np.array((EASTING, NORTHING))
+    points = PointSet(np.column_stack([plan, hills(1)(*plan.T)]))
+    parametrization = parametrize(points, SETTINGS, None)
+    u0, u1, v0, v1 = parametrization.area
+    assert (u1 - u0) * (v1 - v0) < 1.1 * 1800 * 250
+    np.testing.assert_allclose(
+        parametrization.frame.turn_back(np.column_stack([parametrization.plane, parametrization.values]))
+        + parametrization.frame.origin,
+        points.xyz,
+        atol=1e-9,
+    )
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("n", [4, 9, 30, 200])
+def test_chance_does_not_turn_the_axes(n, seed):
+    plan = np.random.default_rng(seed).uniform(0, (900, 600), (n, 2)) + np.array((EASTING, NORTHING))
+    points = PointSet(np.column_stack([plan, hills(1)(*plan.T)]))
+    np.testing.assert_array_equal(parametrize(points, SETTINGS, None).frame.axes, np.eye(3))
+
+
+def test_holes_along_a_valley_predict_as_well_whichever_way_it_runs():
+    ratios, at, origin = [], valley(0, 800, 1600, 200, 9), np.array((EASTING, NORTHING))
+    for seed in range(6):
+        truth, holes, errors = hills(seed, shortest=300.0), valley(0, seed=seed), []
+        height, true = (truth(*(plan + origin).T) for plan in (holes, at))
+        for azimuth in (0, 40):
+            # The same holes in the same rock: only the axes of the map differ.
+            a = np.radians(azimuth)
+            turn = np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]])
+            points = PointSet(np.column_stack([holes @ turn + origin, height]))
+            off = fit_horizon(points, SETTINGS).elevation(*(at @ turn + origin).T) - true
+            assert np.isfinite(off).mean() > 0.95
+            errors.append(rms(off[np.isfinite(off)]))
+        ratios.append(errors[1] / errors[0])
+    assert max(ratios) < 1.1, ratios
+
+
 def test_a_steep_fault_is_met_over_its_best_plane():
     points = fault(72, n=300)
     surface = fit_horizon(points, FitSettings(core="none", interior_tolerance=0.05))

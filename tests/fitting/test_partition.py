@@ -63,6 +63,28 @@ def test_a_uniform_cloud_has_no_core(n, seed):
     assert split.reason.code == "fitting.no-dense-core"
 
 
+def bent(n, seed):
+    """Evenly scattered places on two legs of an area, whose other corner is empty."""
+    plane = uniform(6 * n, seed=seed)
+    return plane[(plane < 500).any(axis=1)][:n]
+
+
+@pytest.mark.parametrize("n", [120, 250, 600])
+@pytest.mark.parametrize("seed", range(8))
+def test_an_empty_corner_makes_no_core_of_the_rest(n, seed):
+    split = split_auto(bent(n, seed), AREA)
+    assert split.core is None, split.reason
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_core_in_a_bent_area_is_found(seed):
+    core = (100.0, 400.0, 900.0, 1400.0)
+    plane = np.concatenate([uniform(300, core, seed), bent(150, 50 + seed)])
+    split = split_auto(plane, AREA)
+    assert split.core is not None, split.reason
+    np.testing.assert_allclose(split.core, core, atol=120)
+
+
 def test_a_regular_grid_has_no_core():
     grid = np.stack(np.meshgrid(np.arange(20.0), np.arange(30.0)), axis=-1).reshape(-1, 2)
     assert split_auto(grid, box(grid)).core is None
