@@ -234,7 +234,8 @@ def _read_collars(
         if k != i:
             reason = message(
                 "io.hole-named-alike",
-                "The name differs from hole {hole} (row {row}) only in case, leading zeros, blanks or hyphens",
+                "The name differs from hole {hole} (row {row}) only in case, leading zeros, blanks, hyphens or "
+                "look-alike letters",
                 hole=Untranslated(name[k]),
                 row=rows.line[k],
             )

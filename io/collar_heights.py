@@ -30,6 +30,19 @@ FEW = 0.05
 def check_heights(rows: Rows, x: Floats, y: Floats, z: Floats, ground: Ground | None) -> None:
     """Warn of collars far above or below the ground, or, where there is none, the collars around them."""
     used = np.flatnonzero(rows.ok)
+    if ground is None and len(used) > 1 and not z[used].any():
+        rows.journal.add(
+            "warning",
+            rows.file,
+            message(
+                "io.collars-all-at-zero",
+                "The elevation of all {count} collars is 0: depths become elevations below 0, and the relief of the "
+                "ground becomes one of the horizons",
+                count=len(used),
+            ),
+            message("io.give-elevations-or-ground", "Give the elevations, or leave them empty and name the [ground]."),
+            column=_header(rows),
+        )
     if ground is not None:
         height = z[used] - ground.elevation(x[used], y[used])
         on_grid = np.isfinite(height)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
+from geofit.data.legible import latin_letters
 from geofit.data.logs import IntervalLog
 from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
@@ -26,12 +27,14 @@ TOUCH = 0.005
 def code_key(code: str) -> str:
     """Return what is the same for codes that differ only in case, blanks, hyphens, underscores and a last full stop.
 
+    Letters that look alike (:func:`geofit.data.legible.latin_letters`) are the same, too.
+
     Examples
     --------
     >>> [code_key(code) for code in ("SST.", "Sst ", "T2_a", "T2 - a", "T2a", "T2?")]
     ['sst', 'sst', 't2 a', 't2 a', 't2a', 't2?']
     """
-    return re.sub(r"[\s_-]+", " ", code.casefold()).strip(" .")
+    return re.sub(r"[\s_-]+", " ", latin_letters(code)).strip(" .")
 
 
 @dataclass(frozen=True)

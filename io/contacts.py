@@ -83,6 +83,12 @@ def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Jo
     """Take the contacts of a rule; the journal receives what is found."""
     carrying = [log for log in boreholes.logs if np.isin(log.code, rule.codes).any()]
     codes = sorted({str(c) for log in boreholes.logs for c in np.unique(log.code)})
+    if not codes:
+        raise InputError(
+            message("io.no-interval-usable", "None of the intervals can be used"),
+            message("io.correct-listed", "Correct the listed entries."),
+            file=", ".join(log.file for log in boreholes.logs) or None,
+        )
     if not carrying:
         code = rule.codes[0]
         raise InputError(
@@ -90,7 +96,7 @@ def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Jo
                 "io.code-not-logged",
                 "No interval has the code '{code}'; the codes are {names}",
                 code=Untranslated(code),
-                names=", ".join(codes[:40]) or message("data.none", "none"),
+                names=", ".join(codes[:40]),
             ),
             nearest_name(code, codes, message("data.name-one", "Name one of them.")),
             file=", ".join(log.file for log in boreholes.logs) or None,
@@ -169,7 +175,7 @@ def _warn_of_two_logs(found: Sequence[PointSet], rule: ContactRule, journal: Jou
 
 
 def _warn_of_case(rule: ContactRule, codes: Sequence[str], file: str, journal: Journal) -> None:
-    """Warn of codes that differ from those of the rule in case or marks only: they are not used."""
+    """Warn of codes that differ from those of the rule in case, marks or look-alike letters only: they are not used."""
     stated = {code_key(code) for code in rule.codes}
     alike = [code for code in codes if code_key(code) in stated and code not in rule.codes]
     if not alike:
@@ -180,7 +186,8 @@ def _warn_of_case(rule: ContactRule, codes: Sequence[str], file: str, journal: J
         file,
         message(
             "io.code-differs-in-case",
-            "The codes {names} differ from {code} in case or marks only, and do not count as it",
+            "The codes {names} differ from {code} only in case, marks or look-alike letters (Cyrillic), and do "
+            "not count as it",
             names=", ".join(alike),
             code=Untranslated(rule.label),
         ),

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import Message, message
+from geofit.data.messages import Message, Untranslated, message
 from geofit.io.rows import Rows
 
 __all__ = ["LEAST", "check_digits", "lost_by_rounding", "step_of_single"]
 
 Floats = NDArray[np.float64]
+
+#: A number in scientific notation: the decimals of its mantissa, and its exponent.
+_SCIENTIFIC = re.compile(r"\s*[-+]?\d(?:[.,](\d*))?[eE]\+?(\d{1,2})\s*")
 
 #: Metres that rounding may move a place by without a word.
 LEAST = 0.01
@@ -30,6 +35,9 @@ def check_digits(rows: Rows, x: Floats, y: Floats, z: Floats | None = None) -> N
         # What was rounded is the file, not the column: the larger coordinate lost more.
         step = max(step, *(float(np.spacing(np.float32(np.abs(part).max(initial=0.0)))) for part in (east, north)))
         rows.journal.add("warning", rows.file, *lost_by_rounding(step), column=column)
+    for role in ("x", "y", "z"):
+        if role in rows.columns:
+            _warn_of_few_digits(rows, role)
     if z is not None and {"x", "y", "z"}.isdisjoint(rows.factors) and _like_kilometres(east, north, z[rows.ok]):
         rows.journal.add(
             "warning",
@@ -49,6 +57,30 @@ def check_digits(rows: Rows, x: Floats, y: Floats, z: Floats | None = None) -> N
             ),
             column=column,
         )
+
+
+def _warn_of_few_digits(rows: Rows, role: str) -> None:
+    """Warn of coordinates that a spreadsheet wrote with the digits that it showed: 3101242.81 becomes 3.10E+06."""
+    cells = rows.table.columns[rows.columns[role]]
+    some = [cell for i, cell in enumerate(cells[:_MOST]) if rows.ok[i]]
+    steps = [
+        10.0 ** (int(found[2]) - len(found[1] or "")) for found in map(_SCIENTIFIC.fullmatch, some) if found is not None
+    ]
+    if 2 * len(steps) <= len(some) or min(steps) <= 1.0:
+        return
+    rows.journal.add(
+        "warning",
+        rows.file,
+        message(
+            "io.few-digits",
+            "Coordinates such as {cell} have too few digits: they are rounded to {step:g} m, and up to {most:g} m off",
+            cell=Untranslated(next(cell.strip() for cell in some if _SCIENTIFIC.fullmatch(cell))),
+            step=min(steps) * rows.factors.get(role, 1.0),
+            most=min(steps) * rows.factors.get(role, 1.0) / 2,
+        ),
+        message("io.export-all-digits", "Export them again with all digits, as numbers with two decimals."),
+        column=rows.table.header[rows.columns[role]],
+    )
 
 
 def step_of_single(values: Floats) -> float:

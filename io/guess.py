@@ -449,7 +449,7 @@ def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
     remedy = message(
         "io.name-column",
         "Name the column in the header, in columns = {{ {example} }} of a site or mapping file, or with --x, --y, "
-        "--z, --surface or --section of geofit fit and check; a column number, counted from 1, also works.",
+        "--z, --surface or --section of geofit fit, check and export; a column number, counted from 1, also works.",
         example=example,
     )
     ground = message("io.give-ground", "Or give the ground ([ground], a grid): collars are placed on it.")

@@ -30,6 +30,14 @@ _KINDS = (
     (message("io.kind-pdf-document", "a PDF document"), rb"%PDF-"),
     (message("io.kind-picture", "a picture"), rb"\x89PNG|\xff\xd8\xff|GIF8|II\*\0|MM\0\*"),
 )
+#: Surveys of caves: their stations are not points of a horizon.
+_SURVEYS = (
+    (message("io.kind-compass-survey", "a Compass survey"), rb"[^\r\n]*\r?\n\s*SURVEY NAME:"),
+    (
+        message("io.kind-survex-survey", "a Survex survey"),
+        rb"(\s*(;[^\n]*)?\n)*\s*\*(begin|include|export|fix|data|units|cs|title)\b",
+    ),
+)
 
 
 def require_table(data: bytes, name: str) -> None:
@@ -41,13 +49,12 @@ def require_table(data: bytes, name: str) -> None:
         If the file begins as one of these.
     """
     head = bytes(data[:_HEAD]).removeprefix(b"\xef\xbb\xbf")
-    for what, pattern in _KINDS:
+    for what, pattern in (*_KINDS, *_SURVEYS):
         if re.match(pattern, head, re.IGNORECASE):
-            raise InputError(
-                message("io.file-not-table", "The file is {what}, not a table", what=what),
-                message(
-                    "io.give-table",
-                    "Give a table of points or holes (CSV, XLSX); geofit info reads models and meshes.",
-                ),
-                file=name,
+            remedy = message(
+                "io.give-table", "Give a table of points or holes (CSV, XLSX); geofit info reads models and meshes."
             )
+            if (what, pattern) in _SURVEYS:
+                remedy = message("io.read-with-cave", "geofit cave reads it.")
+            reason = message("io.file-not-table", "The file is {what}, not a table", what=what)
+            raise InputError(reason, remedy, file=name)

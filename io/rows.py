@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.labels import Labels
-from geofit.data.legible import legible
+from geofit.data.legible import latin_letters, legible
 from geofit.data.messages import EMPTY, Message, Untranslated, message, plural_message
 from geofit.io.big_columns import BigColumn
 from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
@@ -208,8 +208,8 @@ class Rows:
     def require_known(self, role: str, names: Sequence[str], known: Iterable[str], where: str) -> list[str]:
         """Return the names as they are known, and reject the rows whose hole, adit or horizon is not.
 
-        A name that differs from one known name only in case, leading zeros, blanks or hyphens is that one, and is
-        listed; ``where`` states what should name it.
+        A name that differs from one known name only in case, leading zeros, blanks, hyphens or letters that look alike
+        is that one, and is listed; ``where`` states what should name it.
         """
         present = list(known)
         lookup, hints = set(present), dict[str, Message]()
@@ -267,8 +267,8 @@ class Rows:
         if marks:
             reason = message(
                 "io.names-matched-by-marks",
-                "Names ({count}) that differ only in leading zeros, blanks or hyphens from those of the {where} are "
-                "taken as these: {names}",
+                "Names ({count}) that differ only in leading zeros, blanks, hyphens or look-alike letters from those "
+                "of the {where} are taken as these: {names}",
                 count=len(marks),
                 where=where,
                 names=", ".join(pairs[name] for name in marks[:10]),
@@ -365,14 +365,15 @@ def _warn_of_dates(rows: Rows, role: str) -> None:
 def name_key(name: str) -> tuple[str, ...]:
     """Return what is the same for names that differ only in case, leading zeros, blanks, hyphens and underscores.
 
-    Marks between two numbers separate them all the same. A program may have written the name 7 as the number 7.0.
+    Cyrillic letters that look alike are the same, too. Marks between two numbers separate them all the same. A program
+    may have written the name 7 as the number 7.0.
 
     Examples
     --------
     >>> [name_key(name) for name in ("ZK-007", "zk 7", "7.0", "BH1-1", "BH11", "BH7*")]
     [('zk', '7'), ('zk', '7'), ('7',), ('bh', '1', '1'), ('bh', '11'), ('bh', '7', '*')]
     """
-    whole = re.sub(r"^(\d+)\.0+$", r"\1", name.casefold())
+    whole = re.sub(r"^(\d+)\.0+$", r"\1", latin_letters(name))
     parts: list[str] = re.findall(r"[^\W\d_]+|\d+|[^\w\s-]", whole)
     return tuple((part.lstrip("0") or "0") if part.isdecimal() else part for part in parts)
 
@@ -419,6 +420,6 @@ def _mixed_marks(role: str, mark: str, other: str) -> tuple[Message, Message]:
         "io.write-one-decimal-mark",
         "Write all numbers with '{mark}' before the fraction and without thousands separators. If the decimal mark of "
         'the table is \'{other}\', state decimal = "{other}" in a site or mapping file, or --decimal "{other}" of '
-        "geofit fit and check.",
+        "geofit fit, check and export.",
         **marks,
     )

@@ -453,9 +453,40 @@ def _joined(sets: list[Orientations]) -> Orientations | None:
     return Orientations(**{f.name: np.concatenate([getattr(s, f.name) for s in sets]) for f in fields(Orientations)})
 
 
+def _holes_without_limit(rule: ContactRule, journal: Journal) -> int:
+    """Return in how many holes the limit of a rule is not certain, in logs of which every row is used."""
+    refused = {issue.file for issue in journal.issues if issue.severity == "error"}
+    listed = (issue for issue in journal.issues if issue.reason.code == "io.contacts-uncertain")
+    return sum(
+        issue.reason.params["unseen"]
+        for issue in listed
+        if issue.file not in refused
+        and (issue.reason.params["limit"], issue.reason.params["code"]) == (rule.limit, rule.label)
+    )
+
+
 def _with_accuracy(reader: Reader, points: PointSet, horizon: _Horizon, journal: Journal) -> PointSet:
     """Return the points with the site file's accuracy where their own file states none."""
     refused = [issue for issue in journal.issues if issue.severity == "error" and issue.row]
+    unseen = 0 if horizon.rule is None or len(points) else _holes_without_limit(horizon.rule, journal)
+    if horizon.rule is not None and unseen:
+        raise reader.fail(
+            message(
+                "io.horizon-open-everywhere",
+                "Horizon '{name}' has no point: the {limit} of {code} is certain in none of the holes with {code} "
+                "({count})",
+                name=horizon.name,
+                limit=horizon.rule.limit,
+                code=Untranslated(horizon.rule.label),
+                count=unseen,
+            ),
+            message(
+                "io.open-beds-have-no-limit",
+                "A bed that is open at the hole's end has no base, one that starts at the collar no top: name another "
+                "code, or remove its [[horizon]] table.",
+            ),
+            "name",
+        )
     if not len(points) and refused:
         raise reader.fail(
             message(

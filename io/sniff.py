@@ -100,6 +100,12 @@ def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, st
             message("io.unpack-table", "Unpack it and name the table; rock volumes are read by geofit pores."),
             file=name,
         )
+    if data[:3] == b"\x1f\x8b\x08":
+        raise InputError(
+            message("io.compressed-not-text", "This is a file compressed with gzip, not a text table"),
+            message("io.unpack-table", "Unpack it and name the table; rock volumes are read by geofit pores."),
+            file=name,
+        )
     if data[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
         raise InputError(
             message("io.workbook-not-text", "This is a workbook, not a text table"),

@@ -85,12 +85,6 @@ class Source:
                 message("io.give-measure", "Give 'depth' or 'elevation'."),
                 file=self.name,
             )
-        if self.decimal == "," and self.sep == ",":
-            raise InputError(
-                message("io.comma-ambiguous", "The comma cannot be both separator and decimal mark"),
-                message("io.name-separator", "Name the separator between the cells."),
-                file=self.name,
-            )
 
     def read(self) -> bytes:
         """Return the bytes of the file."""

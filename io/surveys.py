@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.messages import message, plural_message
 from geofit.io.columns import SURVEY
 from geofit.io.desurvey import minimum_curvature
 from geofit.io.journal import Journal
@@ -190,15 +191,24 @@ def read_stations(
             ),
             message("io.add-known-stations", "Add its other stations, if there are any."),
         )
+    given = Counter(name)
     for hole, mouth in collars.items():
-        if hole not in stations and mouth.stations is None:
-            journal.add(
-                "warning",
-                rows.file,
-                message("io.hole-taken-as-vertical", "Hole {hole} has no survey; it is taken as vertical", hole=hole),
-                message("io.add-stations-of-inclined", "If it is inclined, add its stations."),
-                value=hole,
+        if hole in stations or mouth.stations is not None:
+            continue
+        reason = message("io.hole-taken-as-vertical", "Hole {hole} has no survey; it is taken as vertical", hole=hole)
+        remedy = message("io.add-stations-of-inclined", "If it is inclined, add its stations.")
+        if given[hole]:
+            reason = plural_message(
+                "io.hole-of-refused-stations",
+                "Hole {hole}: its {count} station cannot be used; the hole is taken as vertical, and its contacts may "
+                "be misplaced",
+                "Hole {hole}: none of its {count} stations can be used; the hole is taken as vertical, and its "
+                "contacts may be misplaced",
+                hole=hole,
+                count=given[hole],
             )
+            remedy = message("io.correct-its-stations", "Correct its stations.")
+        journal.add("warning", rows.file, reason, remedy, value=hole)
     rows.close()
     return stations
 

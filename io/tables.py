@@ -102,6 +102,12 @@ def read_table(source: Source, journal: Journal) -> Table:
             file=source.name,
         )
     sep = source.sep or find_separator(sample)
+    if source.sep == source.decimal == "," and not any('"' in line for line in sample):
+        raise InputError(
+            message("io.comma-ambiguous", "The comma cannot be both separator and decimal mark: no cell is in quotes"),
+            message("io.name-separator", "Name the separator between the cells."),
+            file=source.name,
+        )
     decimal = source.decimal or (
         lines.decimal(sep) if isinstance(lines, BigText) else find_decimal("\n".join(lines), sep)
     )
@@ -406,13 +412,17 @@ def parse_numbers(cells: Sequence[str], decimal: str) -> tuple[Floats, NDArray[n
     return cells.numbers(decimal) if isinstance(cells, BigColumn) else _parse_cells(tuple(cells), decimal)
 
 
+#: Minus signs, and the dashes that word processors make of them.
+_DASHES = str.maketrans(dict.fromkeys("\u2212\u2010\u2011\u2013\ufe63\uff0d", "-"))
+
+
 def _parse_cells(cells: tuple[str, ...], decimal: str) -> tuple[Floats, NDArray[np.int64]]:
     joined, written = "".join(cells), cells
     if decimal == "," and ("," in joined or "." in joined):
         swap = str.maketrans(",.", ".,")
         cells = tuple(cell.translate(swap) for cell in cells)
-    if "\u2212" in joined:
-        cells = tuple(cell.replace("\u2212", "-") for cell in cells)
+    if not joined.isascii():
+        cells = tuple(cell.translate(_DASHES) for cell in cells)
     try:
         values = np.fromiter(map(float, cells), dtype=np.float64, count=len(cells))
     except ValueError:
@@ -420,7 +430,7 @@ def _parse_cells(cells: tuple[str, ...], decimal: str) -> tuple[Floats, NDArray[
     if "_" in joined:
         values[["_" in cell for cell in cells]] = np.nan
     bad = np.flatnonzero(~np.isfinite(values))
-    values[bad] = [grouped_number(written[i].replace("\u2212", "-"), decimal) for i in bad.tolist()]
+    values[bad] = [grouped_number(written[i].translate(_DASHES), decimal) for i in bad.tolist()]
     bad = bad[np.isnan(values[bad])]
     return values, bad
 

@@ -9,7 +9,7 @@ import typer
 
 from geofit.cli.app import app
 from geofit.cli.console import list_issues, print_counts, print_json, print_results, with_exit_code
-from geofit.cli.options import SURFACE_FILES, Crs, Decimal, Json, SectionColumn, Sep, SurfaceColumn, X, Y, Z
+from geofit.cli.options import SURFACE_FILES, Crs, Decimal, Json, SectionColumn, Sep, SurfaceColumn, Unit, X, Y, Z
 from geofit.cli.sources import pick, read_source
 
 __all__ = ["check"]
@@ -27,6 +27,7 @@ def check(
     z: Z = None,
     surface_column: SurfaceColumn = None,
     section: SectionColumn = None,
+    unit: Unit = None,
     sep: Sep = None,
     decimal: Decimal = None,
     crs: Crs = None,
@@ -46,6 +47,7 @@ def check(
         "z": z,
         "surface": surface_column,
         "section": section,
+        "unit": unit,
         "sep": sep,
         "decimal": decimal,
         "crs": crs,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -15,16 +15,24 @@ from geofit.cli.options import (
     SURFACE_FILES,
     Author,
     Certificate,
+    Decimal,
     Json,
     LanguageCode,
     Organisation,
     OriginChoice,
+    SectionColumn,
+    Sep,
+    SurfaceColumn,
     Tolerance,
+    Unit,
+    X,
+    Y,
+    Z,
 )
 from geofit.cli.signing import read_origin, signed_by
 from geofit.cli.sources import read_source
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.messages import Message, Untranslated, message
 
 if TYPE_CHECKING:
     from geofit.data.site import Site
@@ -48,6 +56,14 @@ def export(
             help="site.toml or table of points: deviations, sigma of STEP; a site's holes, ground and CRS.",
         ),
     ] = None,
+    x: X = None,
+    y: Y = None,
+    z: Z = None,
+    surface: SurfaceColumn = None,
+    section: SectionColumn = None,
+    unit: Unit = None,
+    sep: Sep = None,
+    decimal: Decimal = None,
     value: Annotated[str, typer.Option(help="What a grid holds: elevation, deviation or thickness.")] = "elevation",
     tolerance: Tolerance = 0.05,
     interval: Annotated[float | None, typer.Option(help="Metres between contours. Default: chosen.")] = None,
@@ -65,11 +81,10 @@ def export(
     from geofit.io.surface_files import read_surfaces
 
     zero = read_origin(origin)
-    site = None if points is None else read_source(points, {}, None)
-    if site is not None:
-        print_issues(site.issues)
+    columns = {"x": x, "y": y, "z": z, "surface": surface, "section": section, "unit": unit}
+    site = _points(points, {**columns, "sep": sep, "decimal": decimal}, crs)
     given = read_surfaces(surfaces)
-    for sentence in (*untrimmed(given, to), *renamed(given, to)):
+    for sentence in (*untrimmed(given, to), *renamed(given, to), *_without_points(given, site, to)):
         say(sentence)
     signed = signed_by(site, author, organisation, zero, certificate=lang.value if certificate else "")
     if to == "step":
@@ -88,7 +103,7 @@ def export(
             points=site.horizons if site else None,
             holes=site.holes if site else (),
             site=site.name if site else surfaces[0].stem,
-            crs=crs if crs is not None else site.crs if site else "",
+            crs=_system(site, to) if crs is None else crs,
             ground=site.ground if site else None,
         )
         if value == "thickness" and (site is None or site.ground is None):
@@ -103,6 +118,58 @@ def export(
     else:
         print_table(("file", "bytes"), [(str(file), str(file.stat().st_size)) for file in files])
     return 0
+
+
+def _points(file: Path | None, columns: dict[str, str | None], crs: str | None) -> Site | None:
+    """Read what --points names; of a table, longitude and latitude are projected to ``crs``."""
+    if file is None:
+        for name, column in columns.items():
+            if column is not None:
+                raise InputError(
+                    message("cli.option-for-points", "{option} describes the table of --points", option=f"--{name}"),
+                    message("cli.give-points-table", "Give the table with --points, or leave {option} out.",
+                            option=f"--{name}"),
+                )  # fmt: skip
+        return None
+    site = read_source(file, columns if file.suffix.casefold() == ".toml" else {**columns, "crs": crs}, None)
+    print_issues(site.issues)
+    return site
+
+
+def _system(site: Site | None, to: str) -> str:
+    """Return the coordinate system that a file states; GeoPackage and GeoTIFF have no place for a mere label."""
+    from geofit.io.crs import is_code
+
+    label = "" if site is None else site.crs
+    if not label or is_code(label) or to not in ("gpkg", "tif"):
+        return label
+    say(
+        message(
+            "cli.label-is-no-system",
+            "The site's coordinate system '{crs}' is a label: the file states none. Give one with --crs EPSG:number",
+            crs=Untranslated(label),
+        )
+    )
+    return ""
+
+
+def _without_points(surfaces: Mapping[str, Any], site: Site | None, to: str) -> list[Message]:
+    """Return a warning for each surface of whose name the given points have no horizon, in formats that use points."""
+    from geofit.io.export.write import FORMATS as KNOWN
+
+    if site is None or len(site.horizons) == len(surfaces) == 1:
+        return []
+    if to != "step" and KNOWN[to].takes not in ("measured", "vtp"):
+        return []
+    return [
+        message(
+            "cli.export-without-points",
+            "{name}: no horizon of --points has this name: the file has no deviations and no sigma of it",
+            name=Untranslated(name),
+        ).with_severity("warning")
+        for name in surfaces
+        if name not in site.horizons
+    ]
 
 
 def _only_step(*options: tuple[str, str | bool | None]) -> None:

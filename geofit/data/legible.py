@@ -6,9 +6,12 @@ import os
 from collections.abc import Mapping
 from typing import TypeVar
 
-__all__ = ["legible", "legible_keys"]
+__all__ = ["latin_letters", "legible", "legible_keys"]
 
 T = TypeVar("T")
+
+#: Lower case of the Cyrillic capitals that look like Latin ones, and these. Greek letters have a meaning in codes.
+_LOOK_ALIKE = str.maketrans("авекмнорстухіјѕ", "abekmhopctyxijs")
 
 
 def legible(name: str) -> str:
@@ -34,6 +37,20 @@ def legible(name: str) -> str:
         except UnicodeEncodeError:  # a name that no file can have
             return name.encode("utf-8", "backslashreplace").decode()
     return name
+
+
+def latin_letters(text: str) -> str:
+    """Return lower case in which Cyrillic letters whose capitals look like Latin ones are these.
+
+    A code that is typed on two keyboards looks the same in a table, and is two.
+
+    Examples
+    --------
+    >>> latin_letters("Т2") == latin_letters("T2"), latin_letters("ZК-07"), latin_letters("глина")
+    (True, 'zk-07', 'глиha')
+    """
+    folded = text.casefold()
+    return folded if folded.isascii() else folded.translate(_LOOK_ALIKE)
 
 
 def legible_keys(named: Mapping[str, T]) -> Mapping[str, T]:

@@ -136,7 +136,7 @@ def import_files(
             break
         except InputError as error:
             # The file is not at fault where it lacks a code that was asked for.
-            if error.code == "io.code-not-logged" or not plan.drop(error):
+            if error.code in ("io.code-not-logged", "io.no-interval-usable") or not plan.drop(error):
                 error.issues = (*error.issues, *plan.issues)
                 raise
     _write(tables, plan, site_file, mapping_file)
@@ -313,7 +313,7 @@ def _spellings(logs: Sequence[IntervalLog], plan: ImportPlan) -> list[tuple[str,
             "warning",
             message(
                 "project.codes-differ-in-case",
-                "Codes that differ in case or marks only count as one bed: {names}",
+                "Codes that differ only in case, marks or look-alike letters (Cyrillic) count as one bed: {names}",
                 names=", ".join(f"{code} ({counts[code]})" for code in codes),
             ),
             message("project.split-codes-in-site-file", "If they are two horizons, give each its own [[horizon]]."),

@@ -14,7 +14,7 @@ from geofit.report.digits import tick
 from geofit.report.histogram import histogram
 from geofit.report.result import HorizonResult
 from geofit.report.style import CORE, LINE, MUTED, TEXT, bands, kind_style, quiet_axes
-from geofit.report.view import choose_view, rims, trimmed
+from geofit.report.view import choose_view, cut_edges, rims, trimmed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -103,9 +103,9 @@ def deviation_map(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
         _closed(axes, surface.outline, color=MUTED, lw=1.0, ls=(0, (6, 3)), zorder=2)
     for name, rim in rims(surface, steps=400).items():
         rim[trimmed(surface, rim[:, 0], rim[:, 1]) < -1e-6] = np.nan
-        flat = view.of(rim)
         heavy = name == "core"
-        axes.plot(*flat.T, color=CORE if heavy else LINE, lw=1.4 if heavy else 0.8, zorder=2 if heavy else 1)
+        for line in (rim, *cut_edges(surface, name)):
+            axes.plot(*view.of(line).T, color=CORE if heavy else LINE, lw=1.4 if heavy else 0.8, zorder=1 + heavy)
     place = view.of(surface.points.xyz)
     d = a.residuals
     for i, band in enumerate(bands(surface.settings)):

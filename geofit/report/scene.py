@@ -6,7 +6,7 @@ import ctypes
 import os
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from geofit.data.site import Hole
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report.result import HorizonResult
 from geofit.report.style import kind_style
-from geofit.report.view import rims, trimmed
+from geofit.report.view import cut_edges, rims, trimmed
 
 if TYPE_CHECKING:
     import pyvista
@@ -48,6 +48,9 @@ STEPS = 90
 SHEER = 0.55
 #: Heights are raised by a whole number, at most MOST_RAISED, until it is this share of the width.
 LEAST_HEIGHT, MOST_RAISED = 0.14, 5
+#: Points and holes are not drawn that lie beside the surfaces by more than these are wide, or, raised, so much above or
+#: below the middle one and so many times farther than most.
+FAR = 8.0
 #: Pores of a network are drawn so much smaller, so that the throats are seen.
 BALL = 0.6
 #: Pixels around what is drawn, for points and lines that are wider than their places.
@@ -62,6 +65,7 @@ class Scene:
 
     ``limits`` are the elevations at the ends of the colours, metres. ``low`` and ``high`` are the corners of the box
     around what is drawn, map coordinates; ``to_pixels`` (2, 4) turns map coordinates and 1 into columns and rows.
+    ``omitted`` counts the points or holes that lie too far off to be drawn.
     """
 
     image: NDArray[np.uint8]
@@ -70,6 +74,7 @@ class Scene:
     low: Floats
     high: Floats
     to_pixels: Floats
+    omitted: int = 0
 
     def pixels(self, xyz: Floats) -> Floats:
         """Return columns and rows (n, 2) of (n, 3) map coordinates."""
@@ -78,9 +83,17 @@ class Scene:
     @property
     def caption(self) -> Message:
         """Direction and scale in words."""
-        if self.raised == 1:
-            return message("report.seen-true-scale", "Seen from the south-west, true scale.")
-        return message("report.seen-exaggerated", "Seen from the south-west, heights × {times}.", times=self.raised)
+        seen = message("report.seen-true-scale", "Seen from the south-west, true scale.")
+        if self.raised != 1:
+            seen = message("report.seen-exaggerated", "Seen from the south-west, heights × {times}.", times=self.raised)
+        if self.omitted:
+            return message(
+                "report.seen-without-far",
+                "{seen} Not drawn, too far off: {count}.",
+                seen=seen,
+                count=self.omitted,
+            )
+        return seen
 
 
 def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -> Scene:
@@ -104,8 +117,12 @@ def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -
     core = rims(surface, steps=400).get("core")
     if core is not None and len(surface.patches) > 1:
         _add_rim(plotter, surface, core, place, color="#0b2f4a", line_width=6)
-    _add_points(plotter, place(surface.points.xyz))
-    return _image(plotter, place, raised, limits)
+        for line in cut_edges(surface, "core"):
+            plotter.add_mesh(_line(place(line)), color="#0b2f4a", line_width=6)
+    xyz = surface.points.xyz
+    far = _far(xyz, raised, surface)
+    _add_points(plotter, place(xyz[~far]))
+    return replace(_image(plotter, place, raised, limits), omitted=int(far.sum()))
 
 
 def site_scene(
@@ -130,9 +147,10 @@ def site_scene(
         _add_surface(plotter, _mesh(surface, place), color=colours[i], opacity=sheer[i])
         for rim in rims(surface, steps=400).values():
             _add_rim(plotter, surface, rim, place, color="#1c2733", line_width=2, opacity=0.35)
-    for hole in holes:
+    far = _far(np.array([hole.xyz.mean(axis=0) for hole in holes]).reshape(-1, 3), raised, *surfaces)
+    for hole in (hole for hole, gone in zip(holes, far, strict=True) if not gone):
         plotter.add_mesh(_line(place(hole.xyz)), color=kind_style(hole.kind)[1], line_width=4)
-    return _image(plotter, place, raised, (0.0, 0.0), boxed=True)
+    return replace(_image(plotter, place, raised, (0.0, 0.0), boxed=True), omitted=int(far.sum()))
 
 
 def mesh_scene(
@@ -233,6 +251,23 @@ def _raised(surfaces: Sequence[HorizonFit]) -> int:
     xyz = np.concatenate([rim for s in surfaces for rim in rims(s).values()])
     width, height = np.ptp(xyz[:, :2], axis=0).max(), np.ptp(xyz[:, 2])
     return int(np.clip(np.ceil(LEAST_HEIGHT * width / max(height, 1e-9)), 1, MOST_RAISED))
+
+
+def _far(xyz: Floats, raised: int, *surfaces: HorizonFit) -> NDArray[np.bool_]:
+    """Mark places (n, 3) that would leave the surfaces a speck: a wrong sign, a wrong unit, a wrong digit."""
+    if not len(xyz):
+        return np.zeros(0, bool)
+    plan = np.concatenate(
+        [
+            surface.outline if surface.outline is not None else np.concatenate([*rims(surface).values()])[:, :2]
+            for surface in surfaces
+        ]
+    )
+    low, high = plan.min(axis=0), plan.max(axis=0)
+    width = float((high - low).max())
+    beside = np.maximum(low - xyz[:, :2], xyz[:, :2] - high).max(axis=1)
+    away = np.abs(xyz[:, 2] - np.median(xyz[:, 2]))
+    return np.asarray((beside > width) | (raised * away > max(width, FAR * raised * float(np.median(away)))))
 
 
 def _plotter(size: tuple[int, int]) -> pyvista.Plotter:
@@ -339,7 +374,7 @@ def _image(
     plotter.enable_parallel_projection()
     plotter.enable_anti_aliasing("ssaa")
     plotter.reset_camera()
-    plotter.camera.zoom(1.0 if boxed else 1.15)
+    plotter.camera.zoom(1.0 if boxed else _closest(plotter))
     _narrow(plotter, boxed=boxed)
     image = np.asarray(plotter.screenshot(return_img=True))[..., :3]
     to_pixels = _projection(plotter, image.shape[:2], place)
@@ -358,6 +393,15 @@ def _image(
         last = np.maximum(last, np.ceil(flat.max(axis=0)).astype(int)).clip(None, [image.shape[1], image.shape[0]])
     to_pixels[:, 3] -= first
     return Scene(image[first[1] : last[1], first[0] : last[0]].copy(), raised, limits, low, high, to_pixels)
+
+
+def _closest(plotter: pyvista.Plotter) -> float:
+    """Return how much larger the picture may be drawn: most are flat, and leave room above and below."""
+    camera, (wide, tall) = plotter.camera, plotter.window_size
+    places = np.concatenate([np.asarray(mesh.points, float) for mesh in plotter.meshes if mesh.n_points])
+    flat = np.abs((places - np.asarray(camera.focal_point)) @ np.stack(_across(plotter), axis=1))
+    most = (flat.max(axis=0) / (camera.parallel_scale * np.array([wide / tall, 1.0]))).max()
+    return float(min(1.15, 0.98 / most))
 
 
 def _narrow(plotter: pyvista.Plotter, *, boxed: bool) -> None:

@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from geofit.data.messages import Message, message
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.sampling.cut import cut_section
 from geofit.splines.patch import Patch
+from geofit.surfaces.patch_surface import PatchSurface
 
-__all__ = ["View", "choose_view", "rims", "trimmed"]
+__all__ = ["View", "choose_view", "cut_edges", "rims", "trimmed"]
 
 Floats = NDArray[np.float64]
 
@@ -84,6 +86,22 @@ def rims(surface: HorizonFit, steps: int = 80) -> dict[str, Floats]:
         west, east = patch.evaluate(np.array([[u0], [u1]]), v)
         outlines[patch.name] = np.concatenate([south, east, north[::-1], west[::-1]]) + surface.origin
     return outlines
+
+
+def cut_edges(surface: HorizonFit, name: str) -> list[Floats]:
+    """Return the lines along which the study area cuts a patch, in map coordinates, (k, 3) each.
+
+    With the rim of the patch as far as it lies in the area they enclose what is left of it. None over the map: seen
+    from above, they are the outline.
+    """
+    if surface.outline is None or surface.frame == "map":
+        return []
+    own = [patch for patch in surface.patches if patch.name == name]
+    whole = PatchSurface(tuple(own), surface.origin, name)
+    rim = rims(surface)[name]
+    if (trimmed(surface, rim[:, 0], rim[:, 1]) > 0.0).all():
+        return []
+    return [line.xyz for line in cut_section(whole, np.vstack([surface.outline, surface.outline[:1]]), tolerance=0.5)]
 
 
 def trimmed(surface: HorizonFit, x: Floats, y: Floats) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -124,3 +125,61 @@ def test_an_import_writes_a_site_file_that_fit_reads_as_one(name, tmp_path, monk
     assert (code, [path.name for path in tmp_path.iterdir()]) == (2, ["picks.csv"])
     assert "must end in .toml" in err
     assert "site.toml" in err
+
+
+@pytest.fixture
+def feet(tmp_path):
+    """Return the STEP file of a surface, and its points in feet in a table whose headers are not known."""
+    surface, points_file = tmp_path / "T2.step", tmp_path / "own.csv"
+    write_step({"T2": fit_horizon(PointSet(points()), name="T2")}, surface)
+    rows = [";".join(f"{value / 0.3048:.4f}".replace(".", ",") for value in row) for row in points()]
+    points_file.write_text("\n".join(["C1;C2;C3", *rows]) + "\n", encoding="utf-8")
+    return surface, points_file
+
+
+COLUMNS = ("--x", "C1", "--y", "C2", "--z", "C3", "--sep", ";", "--decimal", ",", "--unit", "ft")
+
+
+def test_an_export_measures_points_whose_columns_are_named(feet, tmp_path, monkeypatch, capsys):
+    surface, table = feet
+    out = tmp_path / "out.step"
+    code, err = run(monkeypatch, capsys, "export", surface, "--to", "step", "--out", out, "--points", table, *COLUMNS)
+    assert code == 0, err
+    sigma = re.search(r"ITEM\('sigma_m','([^']+)'", out.read_text(encoding="utf-8"))
+    assert sigma is not None
+    assert float(sigma[1]) < 0.5
+
+
+def test_a_check_reads_a_table_in_feet(feet, monkeypatch, capsys):
+    surface, table = feet
+    code, err = run(monkeypatch, capsys, "check", surface, table, *COLUMNS)
+    assert code == 0, err
+
+
+def test_columns_without_points_are_refused(feet, tmp_path, monkeypatch, capsys):
+    code, err = run(monkeypatch, capsys, "export", feet[0], "--to", "obj", "--out", tmp_path / "o.obj", "--x", "C1")
+    assert code == 2
+    assert "--points" in err
+
+
+def test_an_export_names_surfaces_that_have_no_points(tmp_path, monkeypatch, capsys):
+    source, surface, out = table(tmp_path / "picks.csv"), tmp_path / "two.step", tmp_path / "out.step"
+    fit = fit_horizon(PointSet(points()), name="T2")
+    write_step({"T2": fit, "T2 (B)": fit_horizon(PointSet(points() + np.array([0, 0, 50])), name="T2 (B)")}, surface)
+    code, err = run(monkeypatch, capsys, "export", surface, "--to", "step", "--out", out, "--points", source)
+    assert code == 0, err
+    assert [line[:6] for line in err.splitlines() if "--points" in line] == ["T2 (B)"]
+
+
+@pytest.mark.parametrize("to", ["gpkg", "tif"])
+def test_a_label_of_a_site_is_no_coordinate_system(to, tmp_path, monkeypatch, capsys):
+    """The label that a site file may give ended the export of a map."""
+    pytest.importorskip("pyogrio" if to == "gpkg" else "rasterio")
+    table(tmp_path / "picks.csv")
+    site, surface, out = tmp_path / "site.toml", tmp_path / "T2.step", tmp_path / f"a.{to}"
+    site.write_text('[site]\nname = "s"\ncrs = "local grid"\n[[picks]]\nfile = "picks.csv"\n', encoding="utf-8")
+    write_step({"T2": fit_horizon(PointSet(points()), name="T2")}, surface)
+    code, err = run(monkeypatch, capsys, "export", surface, "--to", to, "--out", out, "--points", site)
+    assert code == 0, err
+    assert "local grid" in err
+    assert out.stat().st_size > 1000

@@ -212,3 +212,35 @@ def test_holes_match_whatever_their_case(write):
     assert [issue.file for issue in merged] == ["survey.csv", "log.csv"]
     # Two holes could be meant.
     assert [issue.row for issue in holes.issues if issue.reason.code == "io.name-unknown"] == [6]
+
+
+def test_collars_that_are_all_at_zero_are_warned_of(write):
+    collars = "hole,x,y,z,depth\nB1,0,0,{0},50\nB2,90,0,{1},50\n"
+    for heights, count in (((0, 0), 1), ((0, 3), 0)):
+        holes = read_boreholes(write(collars.format(*heights), "collar.csv"), None, [])
+        assert sum(issue.reason.code == "io.collars-all-at-zero" for issue in holes.issues) == count
+
+
+def test_a_hole_whose_stations_are_refused_is_not_one_without_a_survey(write):
+    collar = write("hole,x,y,z,depth\nB1,0,0,100,50\nB2,90,0,100,50\n", "collar.csv")
+    survey = write("hole,depth,azimuth,dip\nB1,0,N45E,-60\nB1,25,N45E,-60\n", "survey.csv")
+    found = [issue for issue in read_boreholes(collar, survey, []).issues if issue.severity == "warning"]
+    assert {issue.value: issue.reason.code for issue in found} == {
+        "B1": "io.hole-of-refused-stations",
+        "B2": "io.hole-taken-as-vertical",
+    }
+
+
+def test_dashes_that_a_word_processor_made_of_minus_signs(write):
+    collar = write("hole,x,y,z,depth\nB1,0,0,100,50\n", "collar.csv")
+    survey = write("hole,depth,azimuth,dip\nB1,0,90,\u201360\n", "survey.csv")
+    holes = read_boreholes(collar, survey, [], dip="down-negative")
+    np.testing.assert_allclose(holes.paths["B1"].at(20.0)[0], [10, 0, 100 - 20 * np.sqrt(0.75)], atol=1e-9)
+
+
+def test_names_in_letters_that_look_alike_are_one_hole_with_a_warning(write):
+    collar = write("hole,x,y,z,depth\nBH1,0,0,100,50\n", "collar.csv")
+    table = write("hole,from,to,code\n\u0412\u041d1,0,10,A\n\u0412\u041d1,10,50,B\n", "log.csv")
+    holes = read_boreholes(collar, None, [table])
+    assert take_contacts(holes, base="A").points.xyz[:, 2].tolist() == [90]
+    assert [issue.reason.code for issue in holes.issues if issue.severity != "note"] == ["io.names-matched-by-marks"]

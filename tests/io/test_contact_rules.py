@@ -7,7 +7,7 @@ import pytest
 
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.logs import IntervalLog, LoggedHoles
-from geofit.io.contact_rules import ContactRule
+from geofit.io.contact_rules import ContactRule, code_key
 from geofit.io.contacts import load_rule
 from geofit.io.journal import Journal
 from geofit.io.site_file import read_site
@@ -132,3 +132,28 @@ def test_codes_in_another_case_are_warned_of():
     journal = Journal()
     assert load_rule(holes, ContactRule(("T2", "t2")), journal).hole.tolist() == ["B0", "B1"]
     assert not journal.issues
+
+
+def test_codes_in_letters_that_look_alike_are_warned_of():
+    """T2 typed on a Cyrillic keyboard: its contacts were lost without a word."""
+    journal = Journal()
+    holes = logged([("soil", 4), ("T2", 2), ("rock", 9)], [("soil", 4), ("\u04222", 3), ("rock", 9)])
+    assert load_rule(holes, ContactRule(("T2",)), journal).hole.tolist() == ["B0"]
+    (found,) = [issue for issue in journal.issues if issue.reason.code == "io.code-differs-in-case"]
+    assert found.value == "\u04222"
+
+
+def test_greek_letters_have_a_meaning():
+    assert len({code_key(code) for code in ("β", "B", "γ", "α", "A")}) == 5
+
+
+def test_a_bed_that_no_hole_leaves_is_the_reason_of_a_horizon_without_points(tmp_path):
+    (tmp_path / "collar.csv").write_text("hole,x,y,z,depth\nB1,0,0,90,9\nB2,50,0,91,9\n", "utf-8")
+    (tmp_path / "log.csv").write_text("hole,from,to,code\nB1,0,4,Q\nB1,4,9,T\nB2,0,5,Q\nB2,5,9,T\n", "utf-8")
+    file = tmp_path / "site.toml"
+    tables = '[boreholes]\ncollar = "collar.csv"\nintervals = ["log.csv"]\n[[horizon]]\nname = "T"\nbase = "T"\n'
+    file.write_text(tables, "utf-8")
+    with pytest.raises(InputError) as caught:
+        read_site(file)
+    assert caught.value.reason.code == "io.horizon-open-everywhere"
+    assert caught.value.reason.params["count"] == 2

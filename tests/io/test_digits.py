@@ -68,3 +68,18 @@ def test_collars_in_kilometres_are_warned_of(tmp_path):
     (tmp_path / "log.csv").write_text("\n".join(["hole,from,to,lith", *(f"B{i},0,30,a" for i in range(40))]), "utf-8")
     holes = read_boreholes(tmp_path / "collar.csv", intervals=[tmp_path / "log.csv"])
     assert len(found(holes.issues, "io.places-like-kilometres")) == 1
+
+
+def test_the_digits_that_a_spreadsheet_showed_are_warned_of(tmp_path):
+    """3101242.81 was 3.10E+06 in the file, and every northing the same: nothing was listed."""
+    rows = [f"{a:.2f},{b:.2E},{c:.2f}" for a, b, c in zip(X, Y, Z, strict=True)]
+    (tmp_path / "a.csv").write_text("\n".join(["x,y,z", *rows]), encoding="utf-8")
+    (issue,) = found(read_points(tmp_path / "a.csv").issues, "io.few-digits")
+    assert (issue.column, issue.reason.params["step"], issue.reason.params["most"]) == ("y", 10_000, 5_000)
+
+
+@pytest.mark.parametrize("form", ["{:.9E}", "{:.0f}", "{!r}"])
+def test_numbers_with_all_digits_are_not(form, tmp_path):
+    rows = [f"{form.format(a)},{form.format(b)},{c:.2f}" for a, b, c in zip(X.tolist(), Y.tolist(), Z, strict=True)]
+    (tmp_path / "a.csv").write_text("\n".join(["x,y,z", *rows]), encoding="utf-8")
+    assert not found(read_points(tmp_path / "a.csv").issues, "io.few-digits")

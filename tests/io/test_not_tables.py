@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gzip
+
 import numpy as np
 import pytest
 from surfaces import height_field, horizon
@@ -23,6 +25,8 @@ BEGINNINGS = {
     "an XML or HTML document": "<?xml version='1.0'?>\n<kml><Placemark/></kml>\n",
     "a JSON document": '{"horizon": "T",\n "points": [[1, 2, 3]]}\n',
     "a PDF document": "%PDF-1.7\n1 0 obj\n",
+    "a Compass survey": "Fulford Cave\r\nSURVEY NAME: A\r\nSURVEY DATE: 6 29 1987\r\n",
+    "a Survex survey": "; entrance\n\n*begin fulford\n*data normal from to tape compass clino\n",
 }
 
 
@@ -67,3 +71,10 @@ def test_tables_that_resemble_them_are_read(text, tmp_path):
     (tmp_path / "points.csv").write_text(text)
     (points,) = read_points(tmp_path / "points.csv").horizons.values()
     assert np.array_equal(np.sort(points.xyz[:, 2]), [1, 2, 3, 4])
+
+
+def test_a_compressed_table_is_named(tmp_path):
+    (tmp_path / "points.csv.gz").write_bytes(gzip.compress(b"x,y,z\n1,2,3\n"))
+    with pytest.raises(InputError) as told:
+        read_points(tmp_path / "points.csv.gz")
+    assert told.value.code == "io.compressed-not-text"

@@ -12,8 +12,10 @@ import pytest
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.io.journal import Journal
+from geofit.io.picks import read_points
 from geofit.io.source import Source
 from geofit.io.tables import parse_numbers, read_table
+from geofit.project.importing import import_files
 
 
 def read(path, **stated):
@@ -280,3 +282,14 @@ def test_a_pipe_and_a_name_with_nul_are_refused(tmp_path):
         points_of(tmp_path / "p.csv")
     with pytest.raises(InputError, match="NUL"):
         points_of(f"{tmp_path}/p\0.csv")
+
+
+def test_decimal_commas_in_quotes_between_commas_may_be_stated(write):
+    """An import states what it guessed, and its own statement was refused."""
+    rows = [f'"B{i}","50{i},5","310{i},25","12,75"' for i in range(5)]
+    file = write("\n".join(['"hole","x","y","z"', *rows]) + "\n", "collar.csv")
+    found = import_files([file], file.with_name("site.toml"))
+    assert [(count.file, count.used) for count in found.counts] == [("collar.csv", 5)]
+    with pytest.raises(InputError) as caught:
+        read_points(write("x,y,z\n1,5,2,5,3,5\n", "picks.csv"), sep=",", decimal=",")
+    assert caught.value.reason.code == "io.comma-ambiguous"

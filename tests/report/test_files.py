@@ -16,6 +16,7 @@ import geofit
 from geofit import FitSettings, PointSet
 from geofit.checks.storage import equal_accuracy
 from geofit.data.files import file_stems, replacing
+from geofit.data.site import Hole
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report import fonts, plots, scene
 from geofit.report.pictures import Pictures, draw_pictures, draw_site, write_picture
@@ -23,7 +24,7 @@ from geofit.report.result import HorizonResult
 from geofit.report.schema import horizon_document, write_json
 from geofit.report.style import bands
 from geofit.report.tables import write_issues, write_residuals
-from geofit.report.view import choose_view
+from geofit.report.view import choose_view, rims
 from geofit.splines import bspline
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
@@ -111,7 +112,45 @@ def test_a_point_far_away_costs_no_picture(result):
     far = np.concatenate([xyz, [[0.5, 0.7, ORIGIN[2]]]])
     boundary = np.array([[0, 0], [1000, 0], [1000, 1000], [0, 1000]]) + ORIGIN[:2]
     surface = geofit.fit_horizon(PointSet(far), FitSettings(), boundary).ended_at(boundary)
-    assert scene.horizon_scene(replace(result, surface=surface)).image.size
+    drawn = scene.horizon_scene(replace(result, surface=surface))
+    assert drawn.omitted == 1
+    assert drawn.image.shape[1] > 1000
+    assert drawn.caption.params["count"] == 1
+
+
+@pytest.mark.skipif(not scene.opengl_found(), reason="no OpenGL library on this machine")
+def test_elevations_in_feet_or_with_a_wrong_sign_do_not_make_the_pictures_columns(result):
+    """The surface was a speck between them, and the labels below a picture 100 pixels wide lay on each other."""
+    surface = result.surface
+    xyz = surface.points.xyz.copy()
+    xyz[::40, 2] *= -1
+    wrong = replace(surface, points=surface.points.with_(xyz=xyz))
+    drawn = scene.horizon_scene(replace(result, surface=wrong))
+    assert drawn.omitted == len(xyz[::40])
+    assert drawn.image.shape == scene.horizon_scene(result).image.shape
+    assert not scene.horizon_scene(result).omitted
+    low, high = xyz.min(axis=0), xyz.max(axis=0)
+    names = [("A", high[2] + 20), ("B", high[2] + 40), ("C", -high[2])]
+    depth = np.array([0.0, 50])
+    holes = [Hole(name, "borehole", depth, np.column_stack([np.tile(low[:2], (2, 1)), z - depth])) for name, z in names]
+    assert scene.site_scene([surface], ["#23506b"], holes).omitted == 1
+    assert not scene.site_scene([surface], ["#23506b"], holes[:2]).omitted
+
+
+@pytest.mark.skipif(not scene.opengl_found(), reason="no OpenGL library on this machine")
+def test_a_tall_picture_is_not_cut_off(result):
+    """Points high above a flat surface took its lower corner out of the picture."""
+    surface = result.surface
+    xyz = surface.points.xyz.copy()
+    width = np.ptp(xyz[:, :2], axis=0).max()
+    xyz[:2, :2] = xyz[:, :2].max(axis=0)
+    xyz[:2, 2] += 0.9 * width / scene.horizon_scene(result).raised
+    tall = scene.horizon_scene(replace(result, surface=replace(surface, points=surface.points.with_(xyz=xyz))))
+    assert not tall.omitted
+    for places in (xyz, *rims(surface).values()):
+        at = tall.pixels(places)
+        assert at.min() > -2
+        assert (at < np.array(tall.image.shape[1::-1]) + 2).all()
 
 
 def test_a_picture_that_fails_costs_itself_alone(result, monkeypatch):

@@ -16,8 +16,10 @@ from geofit.data.errors import MissingDependencyError
 from geofit.data.languages import EN, ZH
 from geofit.data.messages import message
 from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
 from geofit.data.site import Ground, Hole, Section, Site
 from geofit.data.title_block import Revision, TitleBlock
+from geofit.fitting.pipeline import fit_horizon
 from geofit.report import fonts, scene
 from geofit.report.chapters import document
 from geofit.report.document import (
@@ -43,6 +45,7 @@ from geofit.report.profile import Profile, along_polyline, profiles, report_sect
 from geofit.report.scene import network_scene
 from geofit.report.section_sheet import draw_section, section_sheet
 from geofit.report.style import horizon_colours
+from geofit.report.view import cut_edges, rims
 
 pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
 Image = pytest.importorskip("PIL.Image", reason="Pillow comes with fpdf2")
@@ -445,3 +448,20 @@ def test_a_section_that_cuts_no_horizon_is_as_high_as_its_ground():
     sheet = section_sheet(section, Site("dam", {}, ground=ground), {}, "section-L")
     assert sheet.low > 1470
     assert sheet.high < 1520
+
+
+def test_a_steep_surface_that_the_study_area_cuts_has_a_closed_rim():
+    """The rim was open where the area ends it: the picture showed lines above and below, and none at the ends."""
+    x, z = (part.ravel() for part in np.meshgrid(np.linspace(0, 300, 13), np.linspace(0, 100, 6)))
+    points = PointSet(np.column_stack([x, 0.2 * z + 0.5 * np.sin(x / 60), z]))
+    area = np.array([[60.0, -50], [240, -50], [240, 90], [60, 90]])
+    fit = fit_horizon(points, FitSettings(frame="best-plane"), area, name="F")
+    assert len(fit.patches) == 1
+    (name,) = rims(fit)
+    lines = cut_edges(fit, name)
+    assert sorted(round(float(line[:, 0].mean())) for line in lines) == [60, 240]
+    for line in lines:
+        assert np.ptp(line[:, 0]) < 1e-6
+        assert (line[:, 2].min(), line[:, 2].max()) == pytest.approx((0, 100), abs=2)
+    whole = fit_horizon(points, FitSettings(frame="best-plane"), name="F")
+    assert not cut_edges(whole, name)
