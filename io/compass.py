@@ -21,6 +21,7 @@ from geofit.data.given import arguments_checked
 from geofit.data.messages import Untranslated, message, plural_message
 from geofit.io.journal import Journal
 from geofit.io.source import Source, as_source
+from geofit.io.splays import use_splays
 from geofit.io.units import METRES
 
 __all__ = ["read_compass"]
@@ -134,6 +135,7 @@ def read_compass(source: Source | str | Path, journal: Journal | None = None) ->
             "io.correct-compass-header", "Correct the line DECLINATION of the survey, with decimal points."
         )
         journal.add("warning", source.name, reason, remedy, row=header.row, value=header.line[:120])
+    use_splays(shots, source.name, journal)
     journal.count(source.name, read, read - used)
     with journal.handed_over():
         return shots.survey(source.name, journal.issues[first_issue:], journal.counts[first_count:])
@@ -267,6 +269,7 @@ def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, jour
             counted="L" not in marks,
             passage="P" not in marks and "S" not in marks,
             rigid="C" in marks,
+            splay="S" in marks,
         )
     else:
         place = shots.station(start)

@@ -24,6 +24,7 @@ from geofit.data.site import ImportIssue
 from geofit.io.journal import Journal, Severity
 from geofit.io.sniff import decode
 from geofit.io.source import Source, as_source
+from geofit.io.splays import use_splays
 from geofit.io.survex_settings import CORRECTIONS, QUANTITIES, Settings, Unread, corrected_by, finite
 
 __all__ = ["read_survex"]
@@ -32,6 +33,8 @@ __all__ = ["read_survex"]
 _REMARKS = frozenset(["copyright", "date", "entrance", "export", "instrument", "ref", "require", "sd", "team", "title"])
 _PLUMBS = {"u": 90.0, "up": 90.0, "+v": 90.0, "d": -90.0, "down": -90.0, "-v": -90.0, "h": 0.0, "level": 0.0}
 _DEEPEST = 32
+#: Ends of a splay: a wall, and a point inside the passage.
+_WALL, _POINT = "wall", "point"
 
 
 class _Reader:
@@ -39,7 +42,7 @@ class _Reader:
 
     def __init__(self, source: Source, journal: Journal) -> None:
         self.source, self.journal = source, journal
-        self.shots: list[tuple[str, str, np.ndarray, int, bool, bool]] = []
+        self.shots: list[tuple[str, str, np.ndarray, int, bool, bool, str]] = []
         self.tubes: list[list[tuple[str, tuple[float, ...]]]] = [[]]
         self.same: dict[str, str] = {}
         self.fixed: list[tuple[str, tuple[float, float, float], int]] = []
@@ -165,6 +168,8 @@ class _Reader:
                     return settings.with_inference(rest[0].casefold(), rest[1].casefold() == "on")
                 case "flags":
                     return settings.with_flags([cell.casefold() for cell in rest])
+                case "alias" if [cell.casefold() for cell in rest] == ["station", "-", ".."]:
+                    return settings
                 case "case":
                     return replace(settings, case=rest[0].casefold())
                 case "equate":
@@ -271,11 +276,13 @@ class _Reader:
 
     def shot(self, readings: dict[str, str], settings: Settings, row: int) -> None:
         names = []
-        splay = settings.splay
+        # What a splay leads to: Survex takes "." for a point inside the passage, and "..." for an ordinary station.
+        splay = _WALL if settings.splay else ""
         for role in ("from", "to"):
             if set(readings[role]) <= {".", "-"}:
-                splay, self.anonymous = True, self.anonymous + 1
+                self.anonymous += 1
                 names.append(f"({self.anonymous})")
+                splay = {"...": splay, ".": _POINT}.get(readings[role], _WALL)
             else:
                 names.append(settings.full(readings[role]))
         tape, back_tape = (settings.reading(name, readings.get(name, "-")) for name in ("tape", "backtape"))
@@ -305,7 +312,8 @@ class _Reader:
         offset = polar(tape, compass + settings.declination, clino)
         require_length(offset)
         counted = not (splay or settings.duplicate or settings.surface)
-        self.shots.append((names[0], names[1], offset, row, counted, not (splay or settings.surface)))
+        passage = not (splay or settings.surface)
+        self.shots.append((names[0], names[1], offset, row, counted, passage, "" if settings.surface else splay))
         self.bearings += abs(clino) < 90.0
         for unread in settings.unread:
             self.uncorrected[unread] = self.uncorrected.get(unread, 0) + 1
@@ -330,7 +338,9 @@ class _Reader:
         """Return what was read, equated stations under one name; ``issues`` may be why there is nothing."""
         found = ShotList()
         between: dict[tuple[str, str], int] = {}
-        for start, end, offset, row, counted, passage in self.shots:
+        # Where no splay is marked as one to a wall, all of them lead there.
+        to_wall = {_WALL} if any(shot[6] == _WALL for shot in self.shots) else {_POINT}
+        for start, end, offset, row, counted, passage, splay in self.shots:
             a, b = self.root(start), self.root(end)
             if a == b:
                 self.list_(
@@ -343,11 +353,12 @@ class _Reader:
                 )
                 self.used -= 1
                 continue
-            number = found.add(a, b, offset, row, counted=counted, passage=passage)
+            number = found.add(a, b, offset, row, counted=counted, passage=passage, splay=splay in to_wall)
             if passage:
                 between.setdefault((a, b), number)
         for tube in self.tubes:
             self.walls(tube, between, found)
+        use_splays(found, self.source.name, self.journal)
         for name, xyz, row in self.fixed:
             if self.root(name) in found.stations:
                 found.fixed[self.root(name)] = xyz

@@ -254,26 +254,35 @@ def _bend(
     """Set (in place) cap and way onward of each end where other shots go on, (k, 2) and (k, 2, 3).
 
     The cap fills the outer side of a bend as far as the wall there is from the axis: the mean of all walls would reach
-    through the walls of a slot that turns.
+    through the walls of a slot that turns. Where three or more shots meet no plane bounds it, and it would reach into
+    narrower ones: there it goes no farther than theirs.
     """
     at: dict[int, list[tuple[int, int]]] = {}
     for shot, ends in enumerate(place.tolist()):
         for end, station in enumerate(ends):
             at.setdefault(station, []).append((shot, end))
+
+    def leaving(shot: int, end: int) -> Floats:
+        return np.asarray((1 - 2 * end) * along[shot])
+
+    def reach(shot: int, end: int, way: Floats) -> float:
+        side, level = (-float(way @ axis[shot]) for axis in frame)
+        a, b = walls[shot, end, 1 if side >= 0 else 0], walls[shot, end, 2 if level >= 0 else 3]
+        turn = np.hypot(side, level)
+        return float(turn / np.hypot(side / a, level / b) if turn > 1e-6 else min(a, b))
+
     for meeting in at.values():
         for shot, end in meeting:
-            others = {int(same[k]): (1 - 2 * e) * along[k] for k, e in meeting if same[k] != same[shot]}
+            others = {int(same[k]): (k, e) for k, e in meeting if same[k] != same[shot]}
             if not others:
                 continue
-            reach = []
-            for way in others.values():
-                side, level = (-float(way @ axis[shot]) for axis in frame)
-                a, b = walls[shot, end, 1 if side >= 0 else 0], walls[shot, end, 2 if level >= 0 else 3]
-                turn = np.hypot(side, level)
-                reach.append(turn / np.hypot(side / a, level / b) if turn > 1e-6 else min(a, b))
-            cap[shot, end] = max(reach)
+            # Beyond a bend the next shot counts; where more shots meet, none is wider than its own walls there.
             if len(others) == 1:
-                onward[shot, end] = next(iter(others.values()))
+                (other,) = others.values()
+                onward[shot, end] = leaving(*other)
+                cap[shot, end] = reach(shot, end, onward[shot, end])
+            else:
+                cap[shot, end] = max(min(reach(shot, end, leaving(*k)), walls[k].max()) for k in others.values())
 
 
 def across(walls: Floats, cosine: Floats) -> Floats:

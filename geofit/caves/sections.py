@@ -170,8 +170,8 @@ def _references(adjusted: AdjustedSurvey, heading: Floats, shot: Ints, first: In
             reference[first[station]] = heading[s]
     tied = np.linalg.norm(survey.offset, axis=1) < _NOTHING
     for station, s in zip(first[survey.wall_station[::-1]].tolist(), survey.wall_shot[::-1].tolist(), strict=True):
-        # A shot of length 0 has no direction.
-        if s >= 0 and not tied[s]:
+        # A shot of length 0 has no direction, and that of a shot to a wall is not the passage's.
+        if s >= 0 and not tied[s] and survey.passage[s]:
             reference[station] = heading[s]
     return reference
 
@@ -184,7 +184,7 @@ def _station_walls(
     value = np.full((len(survey.stations), 4), np.nan)
     source = np.full(value.shape, -1, dtype=np.int64)
     for record, (station, s) in enumerate(zip(wall_station.tolist(), survey.wall_shot.tolist(), strict=True)):
-        against = s >= 0 and heading[s] @ reference[station] < 0
+        against = s >= 0 and survey.passage[s] and heading[s] @ reference[station] < 0
         for wall, seen in enumerate((1, 0, 2, 3) if against else (0, 1, 2, 3)):
             if np.isfinite(given[record, seen]) and source[station, wall] < 0:
                 value[station, wall] = given[record, seen]

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.caves.splays import walls_of_splays
 from geofit.caves.survey import LONGEST, Survey
 from geofit.data.errors import InputError
 from geofit.data.messages import message
@@ -81,6 +82,7 @@ class ShotList:
     shots: list[tuple[int, int, NDArray[np.float64], bool, bool, bool, int]] = field(default_factory=list)
     walls: list[tuple[int, int, Sequence[float]]] = field(default_factory=list)
     fixed: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    splays: list[int] = field(default_factory=list)
     across: bool = False
 
     def station(self, name: str) -> int:
@@ -97,14 +99,35 @@ class ShotList:
         counted: bool = True,
         passage: bool = True,
         rigid: bool = False,
+        splay: bool = False,
     ) -> int:
-        """Add a shot and return its number."""
+        """Add a shot and return its number; a ``splay`` leads to a point of the wall."""
         self.shots.append((self.station(start), self.station(end), offset, counted, passage, rigid, row))
-        return len(self.shots) - 1
+        number = len(self.shots) - 1
+        if splay:
+            self.splays.append(number)
+        return number
 
     def add_walls(self, station: str, shot: int, walls: Sequence[float]) -> None:
         """Add left, right, upper and lower wall of a station, along a shot; nan where one is missing."""
         self.walls.append((self.station(station), shot, walls))
+
+    def add_walls_of_splays(self) -> tuple[int, int]:
+        """Add the walls that splays show; return how many stations have them, and of how many splays they are.
+
+        Walls that were measured count first; two opposite ones of 0 were not.
+        """
+        passages = [(k, *shot[:3]) for k, shot in enumerate(self.shots) if shot[4]]
+        found, used = walls_of_splays(passages, [self.shots[k][:3] for k in self.splays])
+        measured = np.zeros((len(self.stations), 4), dtype=bool)
+        for station, _, walls in self.walls:
+            known = np.isfinite(walls)
+            for pair in (slice(0, 2), slice(2, 4)):
+                measured[station, pair] |= known[pair] & np.any(walls[pair])
+        # Another shot may see the left wall on its right.
+        measured[:, :2] &= measured[:, :2].all(axis=1, keepdims=True)
+        self.walls += [(at, shot, np.where(measured[at], np.nan, walls).tolist()) for at, shot, walls in found]
+        return len(found), used
 
     def survey(self, name: str, issues: Sequence[ImportIssue] = (), counts: Sequence[TableCount] = ()) -> Survey:
         """Return what was collected."""

@@ -110,8 +110,8 @@ def _through_single_pores(axis: int, share: float) -> Message:
     return message(
         "pores.flow-through-single-pores",
         "{share:.0%} of the flow along {axis} passes through pores that touch both faces. The network takes them for "
-        "straight ducts; where they are not, its permeability may be several times too high or too low. Compare it "
-        "with laplace_permeability.",
+        "straight ducts; where they are not, its permeability may be several times too high or too low. Check it by "
+        "solving for the flow in the voxels (laplace_permeability of the library).",
         share=share,
         axis=AXES[axis],
     ).with_severity("warning")
@@ -128,17 +128,19 @@ def _conduits(network: PoreNetwork) -> NDArray[np.float64]:
 def _face_conduits(network: PoreNetwork) -> NDArray[np.float64]:
     """Return the same between a pore and a face of the sample, for each face throat.
 
-    A face cuts a tube at a slant: its section there is an ellipse, and the tube's a circle. The slant is that of the
-    way from the centre of the pore, which is known to half a voxel.
+    A face cuts a tube at a slant: its section there is an ellipse, and the tube's a circle. Slant and length are those
+    of the way from the centre of the pore, which is known to half a voxel: less than that is not aside. Otherwise a
+    tube of a single slice would be longer than its slice.
     """
     throats, edges = network.face_throats, network.edges
     gap = np.abs((throats.middle - network.pores.centre[throats.pore]) * edges)
     normal = throats.face[:, None] // 2 == np.arange(3)
     aside = np.where(normal, 0.0, np.maximum(gap - 0.5 * edges, 0.0))
     straight = np.where(normal, gap, 0.0).sum(axis=1)
-    cosine = np.clip(straight / np.maximum(np.hypot(straight, np.linalg.norm(aside, axis=1)), 1e-12), _SLANT, 1.0)
+    length = np.hypot(straight, np.linalg.norm(aside, axis=1))
+    cosine = np.clip(straight / np.maximum(length, 1e-12), _SLANT, 1.0)
     conductance = throats.conductance * cosine * (1.0 + cosine**2) / 2.0
-    conduits: NDArray[np.float64] = conductance / (throats.length * _narrow_share(network, throats, throats.pore))
+    conduits: NDArray[np.float64] = conductance / (length * _narrow_share(network, throats, throats.pore))
     return conduits
 
 
