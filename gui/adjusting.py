@@ -61,7 +61,7 @@ class Adjusting(QObject):
         panel.adjust_requested.connect(self._adjust)
         panel.weigh_requested.connect(self._weigh)
         panel.move_requested.connect(self.move_to)
-        fitting.adjusted.connect(panel.show_effect)
+        fitting.adjusted.connect(self._applied)
 
     def renew(self, name: str) -> None:
         """Take hold of the chosen control point again: the scene has another surface of its horizon."""
@@ -135,6 +135,12 @@ class Adjusting(QObject):
         self._stop()
         if self._document.selection.horizon is not None:
             self._fitting.weigh(self._document.selection.horizon, patch, i, j, weight)
+
+    def _applied(self, horizon: str, before: Accuracy) -> None:
+        """Show what an edit did, where its horizon is the one that is shown."""
+        surface = self._document.surface(horizon)
+        if horizon == self._document.selection.horizon and surface is not None and surface.accuracy is not None:
+            self._panel.show_applied(before, surface.accuracy)
 
     def _try(self, edit: ManualEdit) -> None:
         self._stop()

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 
 from geofit.bodies.settings import BodySettings
 from geofit.data.files import file_stems
-from geofit.data.messages import message
+from geofit.data.messages import Untranslated, message
 from geofit.data.stale import stale_warning
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.activity import Activity, Work
@@ -340,10 +340,18 @@ class Bodies(QObject):
         text = self.tr("Wrote {names}.").format(names=", ".join([path, *pages]))
         back = written.read_back
         if back is not None:
-            checks = "; ".join(translated(check.text) for check in back.checks if check.passed is False)
+            failed = [check.text for check in back.checks if check.passed is False]
+            checks = "; ".join(map(translated, failed))
             text += " " + (checks or self.tr("Read back: {n} faces, all checks pass.").format(n=back.faces))
+            for one in failed:
+                place = Untranslated(path)
+                _LOG.warning(message("data.sentence-at-place", "{place}: {sentence}", place=place, sentence=one))
+            if failed:
+                # What the status bar says is gone in seconds.
+                self._panels.reveal("log")
         if stale:
             text += " " + translated(stale_warning(stale))
+            _LOG.warning(stale_warning(stale))
         self.reported.emit(text)
 
     def _ask_file(self, kind: str) -> None:

@@ -94,7 +94,9 @@ class ContextMenus(QObject):
     def _fill(self, menu: QMenu, name: str) -> None:
         """Add what can be done with a horizon."""
         document, layers = self._document, self._panels.view.layers
-        self._add(menu, self.tr("Fit"), lambda: self._fitting.fit(name))
+        # Of the horizon in the panel as its own button does: with what is written there.
+        fit = self._actions["fit"].trigger if name == document.selection.horizon else partial(self._fitting.fit, name)
+        self._add(menu, self.tr("Fit"), fit)
         examine = self._add(menu, self.tr("Examine away from the data"), lambda: self._fitting.examine(name))
         examine.setEnabled(document.surface(name) is not None)
         menu.addSeparator()

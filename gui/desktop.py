@@ -24,7 +24,7 @@ from geofit.gui.panels.log import qt_to_logging
 from geofit.gui.preferences import Preferences
 from geofit.gui.session import Session
 from geofit.gui.splash import Splash, application
-from geofit.gui.theme import apply_theme, missing_chinese, set_font
+from geofit.gui.theme import apply_theme, missing_chinese, set_font, set_text_size
 from geofit.gui.translate import shown_error
 from geofit.gui.view3d.opengl import require_opengl
 from geofit.gui.worker import finish_all, warm
@@ -55,6 +55,8 @@ class Desktop(QObject):
         qt_to_logging()
         apply_theme(app, self.preferences.theme)
         set_font(app)
+        # Before there is a window: panels are as large as their text when they are made.
+        set_text_size(app, self.preferences.text_size)
         apply_language(self.preferences.language)
         show_lengths_in(self.preferences.lengths)
         app.styleHints().colorSchemeChanged.connect(self._follow_system)

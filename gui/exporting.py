@@ -157,7 +157,10 @@ class Delivering(QObject):
                 for name in self._document.state.bodies
                 if (body := dated_body(self._document, name)) is not None
             }
-            dialog = ReportDialog(site, results, self._window, self._document.blocks(), self._folder(), bodies)
+            unfitted = [name for name in self._document.horizons if name not in surfaces]
+            dialog = ReportDialog(
+                site, results, self._window, self._document.blocks(), self._folder(), bodies, unfitted
+            )
             dialog.written.connect(self.list_report)
             dialog.examined.connect(
                 lambda name, prediction: self._document.put_prediction(provenances[name], prediction)

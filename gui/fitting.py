@@ -10,7 +10,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from geofit.data.accuracy import Accuracy
-from geofit.data.messages import Untranslated, message, plural_message
+from geofit.data.messages import Message, Untranslated, message, plural_message
 from geofit.data.prediction import PredictionResult
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
@@ -36,20 +36,33 @@ from geofit.project.horizon_edits import HorizonEdit, present_name, present_prov
 from geofit.project.provenance import Corners, DocumentError, Move, Provenance, Row
 from geofit.site.throw import FaultCut
 
-__all__ = ["Fitting"]
+__all__ = ["Fitting", "point_not_fitted"]
 
 _LOG = logging.getLogger(__name__)
+
+
+def point_not_fitted(name: str, row: Row) -> Message:
+    """Return why a surface cannot be moved to a point: it was made without it."""
+    return message(
+        "gui.point-not-fitted",
+        "{file} row {row} is not among the points of the surface of '{name}'. Include it and fit, or choose "
+        "another point.",
+        file=row.file,
+        row=row.row,
+        name=name,
+    )
 
 
 class Fitting(QObject):
     """What makes and changes surfaces.
 
-    Signals: ``refused(exception)`` for a step that does not apply; ``adjusted(before, after)`` with the two checks
-    after a manual edit; ``displaced(cuts)`` with what faults displace, ``reported(text)`` states it in words.
+    Signals: ``refused(exception)`` for a step that does not apply; ``adjusted(horizon, before)`` after a manual
+    edit, with the check before it; ``displaced(cuts)`` with what faults displace; ``reported(text)`` states it in
+    words.
     """
 
     refused = Signal(object)
-    adjusted = Signal(object, object)
+    adjusted = Signal(str, object)
     displaced = Signal(object)
     reported = Signal(str)
 
@@ -172,15 +185,7 @@ class Fitting(QObject):
         surface = self._document.surface(name)
         index = None if surface is None else row.find(surface.points)
         if index is None:
-            text = message(
-                "gui.point-not-fitted",
-                "{file} row {row} is not among the points of the surface of '{name}'. Include it and fit, or choose "
-                "another point.",
-                file=row.file,
-                row=row.row,
-                name=name,
-            )
-            self.refused.emit(DocumentError(text))
+            self.refused.emit(DocumentError(point_not_fitted(name, row)))
             return
         self._edit(MoveToPoint(name, index, share))
 
@@ -378,7 +383,7 @@ class Fitting(QObject):
             return
         self._document.put(provenance, surface)
         self.push(replace(command, horizon=former.horizon))
-        self.adjusted.emit(before, surface.accuracy)
+        self.adjusted.emit(former.horizon, before)
 
     def _examine_work(self, horizon: str, edits: tuple[HorizonEdit, ...]) -> Work:
         name = self._begin(horizon, edits)

@@ -165,7 +165,7 @@ class MainWindow(QMainWindow):
         finish_all(helpers=False)
         for part in (
             self.comparing_fits, self.showing, self.selecting, self.fitting, self.living, self.bodies, self.morphing,
-            self.surveys, self.delivering, self.help,
+            self.surveys, self.delivering, self.ordering, self.help,
         ):  # fmt: skip
             part.close()
         for end in self._ends:
@@ -253,7 +253,7 @@ class MainWindow(QMainWindow):
             "next_panel": lambda: self.panels.reach.step(1),
             "previous_panel": lambda: self.panels.reach.step(-1),
             "reset_layout": self.panels.arrange,
-            "fit": self._with_horizon(self.fitting.fit),
+            "fit": self._with_horizon(self._fit),
             "fit_all": self.fitting.fit_all,
             "examine": self._with_horizon(self.fitting.examine),
             "compare_fits": self._with_horizon(self.comparing_fits.open),
@@ -410,6 +410,14 @@ class MainWindow(QMainWindow):
                 do(name)
 
         return with_chosen
+
+    def _fit(self, name: str) -> None:
+        """Fit a horizon with the settings that the panel shows, as its own button does."""
+        if self.panels.fit.apply(name):
+            self.fitting.fit(name)
+        else:
+            self.panels.reveal("fit")
+            self.tell(self.tr("A setting is out of its range: see the panel Fit."))
 
     def _switch_section(self, on: bool) -> None:
         if on and self.isVisible():

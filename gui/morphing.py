@@ -65,6 +65,8 @@ class Morphing(QObject):
         self._document, self._activity, self._fitting, self._bodies = document, activity, fitting, bodies
         self._panels, self._window = workspace, window
         self.view: MorphView | None = None
+        #: The way whose preview or frames are being made.
+        self._making: MorphWay | None = None
         self._frame: Task | None = None
         self._wanted: float | None = None
         panel = self._panel = workspace.morph
@@ -81,7 +83,7 @@ class Morphing(QObject):
         for choice in (panel.mode, panel.pace):
             choice.activated.connect(lambda _: self._forget())
         panel.seeds.toggled.connect(lambda _: self._forget())
-        activity.ended.connect(lambda: panel.set_running(False))
+        activity.ended.connect(self._ended)
         bodies.showing.shown.connect(self._show_bodies)
         document.site_changed.connect(self._on_site)
         self.filming = Filming(workspace.view, activity, self)
@@ -135,6 +137,7 @@ class Morphing(QObject):
             self._finish(self.view, shapes)
             return
         self._forget()
+        self._making = way
         panel.set_running(True)
         title = self.tr("Join {names}").format(names=", ".join(known))
         self._activity.do(
@@ -257,7 +260,9 @@ class Morphing(QObject):
             self._bodies.fit(title, BetweenHorizons(name, base), BodySettings())
 
     def _previewed(self, view: MorphView, shapes: list[Any]) -> None:
-        self.view = view
+        if view.way != self._making:
+            return  # a body that it was made from is another since
+        self.view, self._making = view, None
         self._show_preview(view, 0.0)
         self.drag(0.0)
         if view.preview.unreached and not view.way.seeds:
@@ -275,15 +280,23 @@ class Morphing(QObject):
         self._say(view)
 
     def _finish(self, view: MorphView, shapes: list[Any]) -> None:
+        self._making = view.way
         self._panel.set_running(True)
         title = self.tr("Frames of {names}").format(names=", ".join(view.way.names))
         self._activity.do(title, finished, view, shapes, on_done=self._finished, in_process=True)
 
     def _finished(self, view: MorphView) -> None:
-        if self.view is None or self.view.way != view.way:
+        if view.way != self._making:
             return
-        self.view = view
+        self.view, self._making = view, None
         self._show_full(view)
+
+    def _ended(self) -> None:
+        """Offer Join again; of frames that were stopped, or failed, say that they lack."""
+        self._panel.set_running(False)
+        making, self._making = self._making, None
+        if making is not None and self.view is not None:
+            self._say(self.view, self.tr("The slider shows the coarse preview: the frames were not made. Press Join."))
 
     def _show_full(self, view: MorphView) -> None:
         """Show the curves, and the frame on the full grid."""
@@ -295,9 +308,9 @@ class Morphing(QObject):
         self._say(view)
         self.rest(self._panel.timeline.tau)
 
-    def _say(self, view: MorphView) -> None:
+    def _say(self, view: MorphView, first: str = "") -> None:
         """Say which parts are never reached and which vanish, and the notes on the full grid; nothing without any."""
-        morph, words = view.preview, []
+        morph, words = view.preview, [first] if first else []
         for parts, text in (
             (morph.unreached, self.tr("Not reached by any front: {n} parts, {volume:.4g} m³.")),
             (morph.vanishing, self.tr("Vanishing without touching the next body: {n} parts, {volume:.4g} m³.")),
@@ -378,15 +391,15 @@ class Morphing(QObject):
     def _show_bodies(self) -> None:
         showing = self._bodies.showing
         self._panel.show_bodies([(name, showing.mark(name)) for name in self._document.state.bodies])
-        view = self.view
-        if view is not None:
+        way = self._making if self.view is None else self.view.way
+        if way is not None:
             now = self._document.state.bodies
-            if any(n not in now or now[n].provenance != p for n, p in zip(view.way.names, view.way.ends, strict=True)):
+            if any(n not in now or now[n].provenance != p for n, p in zip(way.names, way.ends, strict=True)):
                 self._forget()
 
     def _forget(self) -> None:
         """Let go of the way: something that it was made from is another."""
-        self.view, self._wanted = None, None
+        self.view, self._making, self._wanted = None, None, None
         self.filming.stop()
         self._panel.rest()
         self._panel.set_ready(False, False)

@@ -6,7 +6,7 @@ import logging
 from functools import partial
 from typing import Any
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtWidgets import QDialog, QInputDialog, QWidget
 
 from geofit.data.messages import Untranslated, message, plural_message
@@ -16,11 +16,12 @@ from geofit.gui.activity import Activity
 from geofit.gui.dialogs.order import OrderDialog
 from geofit.gui.fitting import Fitting
 from geofit.gui.showing import Showing
-from geofit.gui.translate import translated
+from geofit.gui.translate import shown_error, translated
+from geofit.gui.worker import Task, run_in_process
 from geofit.gui.workspace import Workspace
 from geofit.project.commands import SeparateHorizons, SetOrder
 from geofit.project.document import Document
-from geofit.project.ordering import all_orders, comparable, over_map, separated
+from geofit.project.ordering import all_orders, comparable, order_not_examined, over_map, separated
 from geofit.project.provenance import DocumentError, Provenance
 from geofit.site.separate import Separation
 
@@ -50,6 +51,26 @@ class Ordering(QObject):
         super().__init__(window)
         self._document, self._activity, self._fitting = document, activity, fitting
         self._showing, self._panels, self._window = showing, workspace, window
+        self._task: Task | None = None
+        #: What could not be compared: it is not tried again.
+        self._failed: dict[str, Provenance] = {}
+        self._later = QTimer(self, singleShot=True, interval=0)
+        self._later.timeout.connect(self._compare_stated)
+        document.result_changed.connect(self._wake)
+        document.order_changed.connect(self._wake)
+        activity.ended.connect(self._wake)
+
+    def close(self) -> None:
+        """Listen no more; the document may live longer than the window."""
+        self._later.stop()
+        self._later.timeout.disconnect(self._compare_stated)
+        self._document.result_changed.disconnect(self._wake)
+        self._document.order_changed.disconnect(self._wake)
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing is compared on the side."""
+        return self._task is None and not self._later.isActive()
 
     def edit(self) -> None:
         """Ask for another order of the horizons."""
@@ -59,19 +80,54 @@ class Ordering(QObject):
 
     def check(self) -> None:
         """Compare the strata available, in the document's order."""
-        # The model behind the patches is not needed there, and is much to send to another process.
-        surfaces = {name: one.with_(model=None) for name, one in self.strata().items()}
-        document = self._document
-        pairs = comparable(tuple(surfaces), document.state.parts)
+        surfaces, pairs, made = self._comparable()
         if not pairs:
             self.reported.emit(self.tr("Two fitted horizons are needed to check their order."))
             return
-        title = self.tr("Check the order")
-        made = {name: document.state.provenances[name] for name in surfaces}
-        self._activity.do(
-            title, all_orders, surfaces, pairs, document.site.ground, on_done=partial(self._found, made),
-            in_process=True,
-        )  # fmt: skip
+        title, ground = self.tr("Check the order"), self._document.site.ground
+        done = partial(self._found, made)
+        self._activity.do(title, all_orders, surfaces, pairs, ground, on_done=done, in_process=True)
+
+    def _wake(self, *_: object) -> None:
+        self._later.start()
+
+    def _compare_stated(self) -> None:
+        """Compare the strata of an order that the site states, as a run of the whole site does, where that is missing.
+
+        It counts in the verdict. Nobody waits for it: it runs beside what else is done.
+        """
+        if self._task is not None or self._activity.busy or not self._document.site.order:
+            return
+        surfaces, pairs, made = self._comparable()
+        if made == self._failed or {(one.upper, one.lower) for one in self._showing.orders} >= set(pairs):
+            return
+        self._task = run_in_process(
+            self,
+            all_orders,
+            surfaces,
+            pairs,
+            self._document.site.ground,
+            title=self.tr("Check the order"),
+            on_done=lambda found: self._showing.show_orders(found, made),
+            on_failed=partial(self._give_up, made),
+        )
+        self._task.ended.connect(self._rest)
+
+    def _give_up(self, made: dict[str, Provenance], error: Exception) -> None:
+        self._failed = made
+        _LOG.warning(order_not_examined(shown_error(error)))
+
+    def _rest(self) -> None:
+        self._task = None
+        # A surface may have come meanwhile.
+        self._wake()
+
+    def _comparable(self) -> tuple[dict[str, HorizonFit], tuple[tuple[str, str], ...], dict[str, Provenance]]:
+        """Return the strata available, which two of them can be compared, and from what they are made."""
+        # The model behind the patches is not needed there, and is much to send to another process.
+        surfaces = {name: one.with_(model=None) for name, one in self.strata().items()}
+        pairs = comparable(tuple(surfaces), self._document.state.parts)
+        return surfaces, pairs, {name: self._document.state.provenances[name] for name in surfaces}
 
     def strata(self) -> dict[str, HorizonFit]:
         """Return the surfaces over the map that are not faults; where the site states an order, those that it names."""

@@ -9,6 +9,7 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QDockWidget, QMainWindow, QToolBar
 
 from geofit.gui.layout import BOTTOM, Layout
+from geofit.gui.text_size import sized_by_text
 
 __all__ = ["PanelBar"]
 
@@ -24,7 +25,7 @@ class PanelBar(QToolBar):
         self.setObjectName("panel bar")
         self.setMovable(False)
         self.setContentsMargins(0, 0, 0, 0)
-        self.setMaximumHeight(self.fontMetrics().height() + 10)
+        sized_by_text(self, lambda: self.setMaximumHeight(self.fontMetrics().height() + 10))
         self.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextOnly)
         self._layout = layout
         self._later = QTimer(self, singleShot=True, interval=0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 from PySide6.QtCore import QObject, Signal
 
+from geofit.gui.fitting import point_not_fitted
 from geofit.gui.showing import Showing
 from geofit.gui.translate import translated
 from geofit.gui.workspace import Workspace
@@ -95,7 +96,10 @@ class Selecting(QObject):
             return
         if not self._from_view:
             panels.view.focus_point(chosen.horizon, row)
-        panels.adjust.choose_point(None if surface is None else row.find(surface.points))
+        fitted = None if surface is None else row.find(surface.points)
+        panels.adjust.choose_point(
+            fitted, "" if fitted is not None else translated(point_not_fitted(chosen.horizon, row))
+        )
         points = self._document.listing(chosen.horizon).points
         self.reported.emit(f"{chosen.horizon}: {translated(points.describe(index))}")
 

@@ -61,6 +61,9 @@ class Style(QProxyStyle):
             painter.fillRect(option.rect, option.palette.window())
             painter.fillRect(option.rect.adjusted(0, option.rect.height() - 1, 0, 0), option.palette.mid())
             return
+        if element == _Control.CE_DockWidgetTitle and widget is not None:
+            # Qt paints titles of docks in the font that the application began with.
+            painter.setFont(widget.font())
         if element == _Control.CE_PushButton and widget is not None and widget.property("primary"):
             _accent(option)
         super().drawControl(element, option, painter, widget)

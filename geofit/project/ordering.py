@@ -9,6 +9,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.data.messages import Message, message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Ground, Site
 from geofit.data.threads import one_thread
@@ -20,7 +21,7 @@ from geofit.site.order import Order, compare_pairs
 from geofit.site.separate import Separation, separate_horizons
 from geofit.site.site_checks import add_site_checks
 
-__all__ = ["JoinedBlocks", "all_orders", "comparable", "joined", "over_map", "separated"]
+__all__ = ["JoinedBlocks", "all_orders", "comparable", "joined", "order_not_examined", "over_map", "separated"]
 
 
 def over_map(surfaces: Mapping[str, HorizonFit]) -> dict[str, HorizonFit]:
@@ -69,6 +70,11 @@ def all_orders(
     """Compare pairs of horizons, the upper one first."""
     with one_thread():
         return compare_pairs(surfaces, pairs, ground, lambda share: tell(progress, "order", share))
+
+
+def order_not_examined(reason: str | Message) -> Message:
+    """Return that the horizons could not be compared, and why."""
+    return message("project.order-not-examined", "The order of the horizons was not examined: {reason}", reason=reason)
 
 
 def separated(surfaces: Mapping[str, HorizonFit], minimum: float, site: Site, *, progress: Progress) -> Separation:

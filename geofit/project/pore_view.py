@@ -10,16 +10,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.legible import legible
 from geofit.data.messages import Untranslated, message
 from geofit.data.progress import Progress, tell, within
 
 if TYPE_CHECKING:
     from geofit.pores.network import PoreNetwork
     from geofit.pores.permeability import Permeability
-    from geofit.pores.sliced import Voxels
+    from geofit.pores.representative import RepresentativeVolume
+    from geofit.pores.sliced import SlicedVolume, Voxels
     from geofit.pores.volume import RockVolume
 
-__all__ = ["GreyVolume", "PoreView", "pore_view", "read_grey"]
+__all__ = ["GreyVolume", "PoreView", "is_large", "open_pores", "pore_view", "read_grey"]
 
 #: Voxels of a volume from which on its network is found slab by slab, without a surface: it would have more triangles
 #: than can be looked at.
@@ -57,6 +59,11 @@ class GreyVolume:
     each: tuple[int, NDArray[np.int64]] | None = None
     file: Path | None = None
 
+    @property
+    def sample(self) -> str:
+        """The name of its file without endings."""
+        return legible(self.name.split(".")[0]) or "volume"
+
     def share(self, low: float, high: float) -> float:
         """Return the share of voxels whose values are between two values, both included."""
         if self.each is not None:
@@ -85,6 +92,8 @@ class PoreView:
         Surface of the pores, (m, 3) and (k, 3); none of a volume that is too large for it.
     vertex_pore : (m,) array of int
         The pore at each vertex, counted from 0.
+    settling : RepresentativeVolume or None
+        Porosity of cubes by their size; None of a volume that is too large for it.
     """
 
     network: PoreNetwork
@@ -95,6 +104,7 @@ class PoreView:
     vertices: NDArray[np.float32]
     triangles: NDArray[np.int64]
     vertex_pore: NDArray[np.int64]
+    settling: RepresentativeVolume | None = None
 
 
 def read_grey(
@@ -167,34 +177,55 @@ def pore_view(
     Cancelled
         If the listener asks to stop; asked at every stage.
     """
-    from geofit.io.volume_slices import map_voxels
     from geofit.pores.components import connectivity
     from geofit.pores.extraction import pore_network
     from geofit.pores.permeability import network_permeability
+    from geofit.pores.representative import representative_volume
     from geofit.pores.sliced import SlicedVolume
-    from geofit.pores.volume import RockVolume
 
-    values = map_voxels(source) if isinstance(source, Path) else source
-    if np.prod(values.shape) >= LARGE:
-        sliced = SlicedVolume(_Chosen(values, low, high), pore=[True], voxel=voxel)
-        network = pore_network(sliced, progress=within(progress, 0.1, 0.9))
+    volume = open_pores(source, low, high, voxel)
+    if isinstance(volume, SlicedVolume):
+        network = pore_network(volume, progress=within(progress, 0.1, 0.9))
         tell(progress, "permeability", 0.9)
         flow = network_permeability(network)
         nothing = np.zeros((0, 3), np.float32), np.zeros((0, 3), np.int64), np.zeros(0, np.int64)
         # All pores of a network are connected to a face, or none is.
         connected = network.porosity if network.pores.faces.any() else 0.0
-        return PoreView(network, flow, sliced.porosity, connected, _axes(network), *nothing)
-    volume = RockVolume(_Chosen(values, low, high)[:], pore=[True], voxel=voxel)
+        return PoreView(network, flow, volume.porosity, connected, _axes(network), *nothing)
     network = pore_network(volume, progress=within(progress, 0.0, 0.5))
     vertices, triangles, pore = _surface(volume, network, progress)
     tell(progress, "permeability", 0.9)
     flow = network_permeability(network)
     tell(progress, "connectivity", 0.95)
     found = connectivity(volume)
-    network = replace(network, pore_of=None)
+    axes, network = _axes(network), replace(network, pore_of=None)
+    settling = representative_volume(volume)
     return PoreView(
-        network, flow, found.porosity, found.connected, _axes(network), vertices.astype(np.float32), triangles, pore
+        network, flow, found.porosity, found.connected, axes, vertices.astype(np.float32), triangles, pore, settling
     )
+
+
+def is_large(shape: tuple[int, ...]) -> bool:
+    """Whether a volume has so many voxels that it is worked on slab by slab, and gets no surface."""
+    return bool(np.prod(shape, dtype=float) >= LARGE)
+
+
+def open_pores(
+    source: NDArray[Any] | Path, low: float, high: float, voxel: tuple[float, ...]
+) -> RockVolume | SlicedVolume:
+    """Return the voxels whose values are between ``low`` and ``high`` as pores; of a large volume slab by slab.
+
+    Parameters and errors are those of :func:`pore_view`.
+    """
+    from geofit.io.volume_slices import map_voxels
+    from geofit.pores.sliced import SlicedVolume
+    from geofit.pores.volume import RockVolume
+
+    values = map_voxels(source) if isinstance(source, Path) else source
+    chosen = _Chosen(values, low, high)
+    if is_large(chosen.shape):
+        return SlicedVolume(chosen, pore=[True], voxel=voxel)
+    return RockVolume(chosen[:], pore=[True], voxel=voxel)
 
 
 class _Chosen:

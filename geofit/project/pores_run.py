@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from geofit.pores.table import BeforeAfter
     from geofit.pores.volume import RockVolume
 
-__all__ = ["PoresRun", "run_pores"]
+__all__ = ["PoresRun", "rebuild_pores", "run_pores"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +79,42 @@ class PoresRun:
         )
 
 
+def rebuild_pores(volume: RockVolume | SlicedVolume, progress: Progress | None = None) -> PoresRun:
+    """Extract balls, network and surface of a pore space, and compare the rock before and after; nothing is written.
+
+    Parameters
+    ----------
+    volume : RockVolume or SlicedVolume
+        The voxels; of those on the disk there is neither surface nor table.
+    progress : callable, optional
+        ``progress(stage, fraction)``; False stops.
+
+    Raises
+    ------
+    VolumeError
+        If all voxels are pore.
+    """
+    from geofit.pores.balls import maximal_balls
+    from geofit.pores.extraction import pore_network
+    from geofit.pores.permeability import network_permeability
+    from geofit.pores.surface import pore_surface, require_rock
+    from geofit.pores.table import before_after
+    from geofit.pores.volume import RockVolume
+
+    require_rock(volume)
+    balls = None
+    if volume.cubic or isinstance(volume, RockVolume):
+        balls = maximal_balls(volume, progress=within(progress, 0.0, 0.2))
+    network = pore_network(volume, progress=within(progress, 0.2, 0.4))
+    tell(progress, "permeability", 0.4)
+    permeability = network_permeability(network)
+    surface, table = None, None
+    if isinstance(volume, RockVolume):
+        surface = pore_surface(volume, network, progress=within(progress, 0.4, 0.5))
+        table = before_after(volume, network, surface, progress=within(progress, 0.5, 0.8))
+    return PoresRun(volume, balls, network, permeability, surface, table, ())
+
+
 def run_pores(volume: RockVolume | SlicedVolume, out: Path, name: str, progress: Progress | None = None) -> PoresRun:
     """Extract balls, network and surface of a pore space and write them.
 
@@ -105,25 +141,12 @@ def run_pores(volume: RockVolume | SlicedVolume, out: Path, name: str, progress:
         If a file cannot be written.
     """
     from geofit.io.export.network import write_network_csv, write_network_vtp, write_openpnm_json, write_statoil
-    from geofit.pores.balls import maximal_balls
-    from geofit.pores.extraction import pore_network
-    from geofit.pores.permeability import network_permeability
-    from geofit.pores.surface import pore_surface, require_rock
-    from geofit.pores.table import before_after
-    from geofit.pores.volume import RockVolume
+    from geofit.pores.surface import require_rock
 
     require_rock(volume)
     stem = folder_for(out) / file_stems([name])[name]
-    balls = None
-    if volume.cubic or isinstance(volume, RockVolume):
-        balls = maximal_balls(volume, progress=within(progress, 0.0, 0.2))
-    network = pore_network(volume, progress=within(progress, 0.2, 0.4))
-    tell(progress, "permeability", 0.4)
-    permeability = network_permeability(network)
-    surface, table = None, None
-    if isinstance(volume, RockVolume):
-        surface = pore_surface(volume, network, progress=within(progress, 0.4, 0.5))
-        table = before_after(volume, network, surface, progress=within(progress, 0.5, 0.8))
+    run = rebuild_pores(volume, progress)
+    network, surface = run.network, run.surface
     tell(progress, "files", 0.8)
     openpnm, lines = stem.with_name(f"{stem.name}_openpnm.json"), stem.with_name(f"{stem.name}_network.vtp")
     tables = write_network_csv(network, out, stem.name)
@@ -134,7 +157,6 @@ def run_pores(volume: RockVolume | SlicedVolume, out: Path, name: str, progress:
     triangles = (
         write_triangles(surface.triangulate(), stem.with_name(f"{stem.name}_surface"), sample=True) if surface else ()
     )
-    files = (figures, *tables, openpnm, *statoil, lines, *triangles)
-    run = PoresRun(volume, balls, network, permeability, surface, table, files)
+    run = replace(run, files=(figures, *tables, openpnm, *statoil, lines, *triangles))
     write_figures(run.figures(), figures)
     return run

@@ -18,7 +18,7 @@ from geofit.project.single_reports import BodyPart, body_part
 from geofit.report.result import HorizonResult
 from geofit.site.order import Order
 
-__all__ = ["ReportFiles", "write_report_files"]
+__all__ = ["ReportFiles", "not_in_report", "write_report_files"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,17 +44,20 @@ def write_report_files(
     examined: bool,
     date: str,
     bodies: Mapping[str, BodyResult] | None = None,
+    unfitted: Sequence[str] = (),
     *,
     progress: Progress,
 ) -> ReportFiles:
     """Write the accuracy report of surfaces; errors as :func:`geofit.project.run.write_reports`.
 
     ``code`` is the language's ("en", "zh"): its catalogue need not travel to another process. ``bodies`` that were
-    fitted get a chapter each; of others the summary states that there is none.
+    fitted get a chapter each; of others the summary states that there is none. It names horizons that are ``unfitted``.
     """
     tell(progress, "order", 0.0)
     fits = site_fit({result.name: result.surface for result in results}, blocks, progress)
     parts, failed = _parts(bodies or {}, results, code, progress)
+    if unfitted:
+        failed.insert(0, not_in_report(unfitted))
     made = write_reports(
         results, folder, progress, language=language(code), forms=forms, examined=examined, date=date, fits=fits,
         bodies=parts, notes=failed,
@@ -67,6 +70,14 @@ def write_report_files(
     stale = [*(result.name for result in results if result.stale), *(part.name for part in parts if part.stale)]
     warnings = (*([stale_warning(stale)] if stale else []), *made.warnings, *failed)
     return ReportFiles(made.files, warnings, new, made.orders)
+
+
+def not_in_report(names: Sequence[str]) -> Message:
+    """Return that horizons without a surface have no chapter."""
+    return message(
+        "project.unfitted-not-in-report", "Not fitted, so not in the report: {names}.",
+        names=tuple(map(Untranslated, names)),
+    )  # fmt: skip
 
 
 def _parts(

@@ -473,6 +473,7 @@ def _within(progress: Progress | None, low: float, high: float, name: str = "") 
 
 def _orders(site: Site, fits: SiteFit) -> tuple[tuple[Order, ...] | None, Message]:
     """Compare the horizons of the site's order that were fitted; None and the reason where that is not possible."""
+    from geofit.project.ordering import order_not_examined
     from geofit.site.fit_site import compare_in_order
 
     if site.order and len([name for name in site.order if name in fits.horizon.values()]) < 2:
@@ -481,13 +482,7 @@ def _orders(site: Site, fits: SiteFit) -> tuple[tuple[Order, ...] | None, Messag
     compared = guarded(
         lambda: compare_in_order(site, fits),
         None,
-        lambda reason: missing.append(
-            message(
-                "project.order-not-examined",
-                "The order of the horizons was not examined: {reason}",
-                reason=reason,
-            )
-        ),
+        lambda reason: missing.append(order_not_examined(reason)),
     )
     return compared, missing[0] if missing else EMPTY
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from geofit.pores.table import BeforeAfter, PoreFigures
     from geofit.pores.volume import RockVolume
 
-__all__ = ["PoresFindings", "pores_chapter", "pores_picture"]
+__all__ = ["PoresFindings", "pores_chapter", "pores_picture", "settling_sentence"]
 
 #: Square metres of a millidarcy.
 MILLIDARCY = 9.869233e-16
@@ -222,20 +222,23 @@ def _settling(found: PoresFindings, t: Language) -> list[Block]:
     if "settling" in found.pictures:
         caption = t("Porosity of cubes that fill the sample, by their edge: mean, lowest and highest.")
         blocks.append(Picture(pores_picture("settling", found.name), caption))
-    s = found.settling
-    total = found.volume.porosity
-    if total > 0:
-        settled = np.flatnonzero((s.highest - s.lowest <= 0.1 * total) & (s.count > 1))
-        text = (
-            t(
-                "From an edge of {edge} mm on, all cubes lie within 10 % of the porosity of the sample.",
-                edge=f"{s.edge[settled[0]] * 1e3:.3g}",
-            )
-            if len(settled)
-            else t("No cube smaller than the sample is representative: their porosities differ by more than 10 %.")
-        )
-        blocks.append(Paragraph(text))
+    if found.volume.porosity > 0:
+        blocks.append(Paragraph(settling_sentence(found.settling, found.volume.porosity, t)))
     return blocks
+
+
+def settling_sentence(settling: RepresentativeVolume, porosity: float, t: Language) -> str:
+    """Say from which edge on all cubes of a sample are as porous as it is, within a tenth."""
+    most = 0.1 * porosity
+    far = np.maximum(settling.highest - porosity, porosity - settling.lowest)
+    alike = (settling.highest - settling.lowest <= most) & (far <= most)
+    # Of some size by chance; it counts if no larger cube contradicts it.
+    lasting = np.logical_and.accumulate(alike[::-1])[::-1]
+    settled = np.flatnonzero(lasting & (settling.count > 1))
+    if not len(settled):
+        return t("No cube smaller than the sample is representative: their porosities differ by more than 10 %.")
+    edge = f"{settling.edge[settled[0]] * 1e3:.3g}"
+    return t("From an edge of {edge} mm on, all cubes lie within 10 % of the porosity of the sample.", edge=edge)
 
 
 def _made(found: PoresFindings, t: Language) -> list[Block]:

@@ -16,11 +16,13 @@ from geofit.report.scene import mesh_scene, network_scene
 from geofit.report.style import CORE, LINE, MUTED, WARNING, drawing, quiet_axes
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from geofit.implicit.mesh import TriangleMesh
+    from geofit.pores.representative import RepresentativeVolume
 
-__all__ = ["draw_pores"]
+__all__ = ["draw_pores", "settling_curve"]
 
 #: Bars of a histogram.
 BARS = 30
@@ -71,21 +73,26 @@ def _slices(found: PoresFindings, t: Language) -> Figure:
 def _settling(found: PoresFindings, t: Language) -> Figure:
     from matplotlib.figure import Figure
 
-    s = found.settling
     figure = Figure(figsize=(WIDTH, 2.5), dpi=DOTS)
     axes = figure.add_axes((0.085, 0.2, 0.6, 0.74))
-    edge = s.edge * 1e3
-    axes.fill_between(edge, 100 * s.lowest, 100 * s.highest, color=COLOUR, alpha=0.25, lw=0, label=t("all cubes"))
-    axes.plot(edge, 100 * s.mean, "o-", ms=3, color=CORE, lw=1.2, label=t("mean"))
-    axes.axhline(100 * found.volume.porosity, color=MUTED, lw=0.9, ls="dashed", label=t("whole sample"))
-    axes.set_xlabel(t("Edge of the cubes, mm"))
-    axes.set_ylabel(t("Porosity, %"))
-    axes.set_ylim(bottom=0)
+    settling_curve(axes, found.settling, found.volume.porosity, t)
     axes.grid(color=LINE, lw=0.5)
     axes.set_axisbelow(True)
     quiet_axes(axes)
     axes.legend(loc="upper left", bbox_to_anchor=(1.03, 1.0), borderaxespad=0)
     return figure
+
+
+def settling_curve(axes: Axes, settling: RepresentativeVolume, porosity: float, t: Language = EN) -> None:
+    """Draw the porosity of cubes by their edge: mean, lowest and highest, and that of the whole sample."""
+    edge = settling.edge * 1e3
+    low, high = 100 * settling.lowest, 100 * settling.highest
+    axes.fill_between(edge, low, high, color=COLOUR, alpha=0.25, lw=0, label=t("all cubes"))
+    axes.plot(edge, 100 * settling.mean, "o-", ms=3, color=CORE, lw=1.2, label=t("mean"))
+    axes.axhline(100 * porosity, color=MUTED, lw=0.9, ls="dashed", label=t("whole sample"))
+    axes.set_xlabel(t("Edge of the cubes, mm"))
+    axes.set_ylabel(t("Porosity, %"))
+    axes.set_ylim(bottom=0)
 
 
 def _sizes(found: PoresFindings, t: Language) -> Figure:

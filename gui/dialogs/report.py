@@ -32,7 +32,7 @@ from geofit.gui.translate import translated
 from geofit.project.body_building import BodyResult
 from geofit.project.building import Given
 from geofit.project.fault_blocks import Blocks
-from geofit.project.reporting import ReportFiles, write_report_files
+from geofit.project.reporting import ReportFiles, not_in_report, write_report_files
 from geofit.project.run import Form, report_paths
 from geofit.report.gather import today
 from geofit.report.result import HorizonResult
@@ -64,9 +64,10 @@ class ReportDialog(TaskDialog):
         blocks: Blocks | None = None,
         folder: Path | None = None,
         bodies: Mapping[str, BodyResult] | None = None,
+        unfitted: Sequence[str] = (),
     ) -> None:
         super().__init__(parent)
-        self._bodies = dict(bodies or {})
+        self._bodies, self._unfitted = dict(bodies or {}), tuple(unfitted)
         self._blocks = blocks or Blocks({}, Given(site))
         self.setWindowTitle(self.tr("Accuracy report"))
         self._results = list(results)
@@ -103,9 +104,11 @@ class ReportDialog(TaskDialog):
         if bodies:
             words += " · " + self.tr("Bodies: {names}").format(names=self._titles(bodies))
         stale = [name for of in (horizons, bodies) for name, result in of.items() if result.stale]
+        if self._unfitted:
+            words += f"\n{translated(not_in_report(self._unfitted))}"
         if stale:
             words += f"\n{translated(stale_warning(stale))}"
-        self.say(words, "stale" if stale else "report")
+        self.say(words, "stale" if stale else "warning" if self._unfitted else "report")
         self.refresh()
 
     def _titles(self, results: Mapping[str, HorizonResult] | Mapping[str, BodyResult]) -> str:
@@ -192,6 +195,7 @@ class ReportDialog(TaskDialog):
             examined,
             date,
             self._bodies,
+            self._unfitted,
         )
         self._path = None
         self.say(self.tr("Writing the report…"), "report")
@@ -218,7 +222,8 @@ class ReportDialog(TaskDialog):
         names = ", ".join(path.name for path in made.files.values())
         text = self.tr("Wrote {names} in {folder}.").format(names=names, folder=self._path.parent.resolve())
         summary = "\n".join([text, *(translated(warning) for warning in made.warnings)])
-        self.say(summary, "stale" if made.warnings else "passed")
+        stale = any(one.stale for one in self._results) or any(one.stale for one in self._bodies.values())
+        self.say(summary, "stale" if stale else "warning" if made.warnings else "passed")
         self.written.emit(self._path)
         self.open_result()
 

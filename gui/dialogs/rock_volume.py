@@ -20,20 +20,25 @@ from PySide6.QtWidgets import (
     QLabel,
     QPushButton,
     QSplitter,
+    QTabWidget,
     QVBoxLayout,
     QWidget,
 )
 
 from geofit.data.errors import InputError
+from geofit.data.messages import Untranslated, message, some_of
 from geofit.gui.dialogs.raw_volume import RawVolumeDialog, type_names
 from geofit.gui.dialogs.scene_dialog import SceneDialog
 from geofit.gui.panels.fit_panel import Banner
+from geofit.gui.panels.settling import SettlingPanel
 from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.panels.volume_slices import VolumeSlices
-from geofit.gui.translate import translated
+from geofit.gui.save_file import may_replace
+from geofit.gui.translate import translated, user_language
 from geofit.gui.view3d.pore_scene import PoreScene
 from geofit.io.volumes import RAW, TIFF
-from geofit.project.pore_view import GreyVolume, PoreView, pore_view, read_grey
+from geofit.project.pore_files import PoreFiles, pore_files, write_pore_files
+from geofit.project.pore_view import GreyVolume, PoreView, is_large, pore_view, read_grey
 
 __all__ = ["RockVolumeDialog"]
 
@@ -41,6 +46,8 @@ __all__ = ["RockVolumeDialog"]
 MICRO = 1e6
 #: No value of a voxel: which values are pore is never guessed.
 UNSTATED = -1e12
+#: Files that are named of those that were written; of more the number is given.
+NAMED = 3
 #: Errors of raw files whose remedy is a shape and a type.
 SHAPELESS = ("io.raw-without-shape", "io.raw-size-differs", "io.shape-not-volume")
 
@@ -94,11 +101,16 @@ class RockVolumeDialog(SceneDialog):
         self._reading: tuple[Path, Sequence[int] | None, str | None] | None = None
         #: The raw file that is open.
         self._raw_file: Path | None = None
+        #: Where files go unless somebody chooses otherwise: to the volume.
+        self._folder = Path()
         self._made: tuple[float, ...] = ()
         self._verdict = ("", "none")
         self.old = Banner()
         self.slices, self.scene, self.table = VolumeSlices(), PoreScene(), DataTable()
         self.table.setAccessibleName(self.tr("Figures of the pore space"))
+        self.settling, self.tabs = SettlingPanel(), QTabWidget()
+        self.tabs.addTab(self.table, self.tr("Figures"))
+        self.tabs.addTab(self.settling, self.tr("Representative volume"))
         self.open_button = QPushButton(self.tr("&Open a volume…"))
         self.folder_button = QPushButton(self.tr("Open a fo&lder of slices…"))
         self.shape_button, self.assumed = QPushButton(self.tr("S&hape and type…")), QLabel()
@@ -120,18 +132,23 @@ class RockVolumeDialog(SceneDialog):
         self.key = QLabel()
         self.key.setTextFormat(Qt.TextFormat.RichText)
         self.go.setText(self.tr("&Find pores"))
+        self.export, self.report = QPushButton(self.tr("&Export…")), QPushButton(self.tr("&Report…"))
+        self.export.setToolTip(self.tr("Network, surface and figures of the pores, as files"))
         self.fields = (self.open_button, self.folder_button, self.shape_button, self.low, self.high, self.edge)
         self._lay_out()
         self.open_button.clicked.connect(self._ask)
         self.folder_button.clicked.connect(self._ask_folder)
         self.shape_button.clicked.connect(self._change_shape)
         self.go.clicked.connect(self._find)
+        self.export.clicked.connect(lambda: self._ask_target(report=False))
+        self.report.clicked.connect(lambda: self._ask_target(report=True))
         for box in (self.low, self.high, self.edge):
             box.valueChanged.connect(self._changed)
         self.colour.currentIndexChanged.connect(self._recolour)
         for box_, part in ((self.network, "network"), (self.surface, "surface")):
             box_.setChecked(True)
             box_.toggled.connect(lambda on, part=part: self.scene.set_visible(part, on))
+        self._show_settling(None)
         self.refresh()
 
     def read(self, path: Path, shape: Sequence[int] | None = None, dtype: str | None = None) -> None:
@@ -169,7 +186,36 @@ class RockVolumeDialog(SceneDialog):
         self.go.setEnabled(ready and not self.running)
         for widget in (self.colour, self.network):
             widget.setEnabled(self.view is not None)
+        large = self.volume is not None and is_large(self.volume.values.shape)
+        made = self.view is not None and self._stated() == self._made and not self.running
+        self.export.setEnabled(made)
+        self.report.setEnabled(made and not large)
+        self.report.setToolTip(
+            self.tr("The volume is too large for a report; cut out a part of it.")
+            if large
+            else self.tr("Report of the pores as HTML and PDF")
+        )
         self.surface.setEnabled(self.view is not None and len(self.view.triangles) > 0)
+
+    def write(self, folder: Path, *, report: bool = False) -> None:
+        """Write the files of ``geofit pores`` into a folder, or the report alone, in the windows' language.
+
+        Asks before files are replaced.
+        """
+        assert self.volume is not None
+        name = self.volume.sample
+        files = pore_files(folder, name, self.volume.values.shape, report=report)
+        if not may_replace(files, self.windowTitle(), self):
+            return
+        self._reading = None
+        self.say("")
+        work = (write_pore_files, *self._work(), folder, name, report, user_language())
+        self.begin(
+            *work,
+            on_done=self._wrote,
+            on_stopped=lambda: self.say(self.stopped_words(self.tr("Stopped. Nothing was written."))),
+            files=files,
+        )
 
     def _lay_out(self) -> None:
         form = QFormLayout()
@@ -201,9 +247,10 @@ class RockVolumeDialog(SceneDialog):
         column = QVBoxLayout(right)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.old)
+        self.scene.setMinimumHeight(160)
         column.addWidget(self.scene, 3)
         column.addLayout(colours)
-        column.addWidget(self.table, 1)
+        column.addWidget(self.tabs, 1)
         parts = QSplitter(Qt.Orientation.Horizontal)
         parts.addWidget(left)
         parts.addWidget(right)
@@ -213,7 +260,7 @@ class RockVolumeDialog(SceneDialog):
         layout = QVBoxLayout(self)
         layout.addWidget(parts, 1)
         layout.addLayout(self.message_row)
-        layout.addLayout(self.foot())
+        layout.addLayout(self.foot(self.export, self.report))
         self.resize(QSize(1180, 760).boundedTo(self.screen().availableSize()))
 
     def _ask(self) -> None:
@@ -228,6 +275,20 @@ class RockVolumeDialog(SceneDialog):
         path = QFileDialog.getExistingDirectory(self, self.tr("Open a folder of slices"))
         if path:
             self.read(Path(path))
+
+    def _ask_target(self, *, report: bool) -> None:
+        title = self.tr("Folder of the report") if report else self.tr("Folder of the files")
+        folder = QFileDialog.getExistingDirectory(self, title, str(self._folder))
+        if folder:
+            self.write(Path(folder), report=report)
+
+    def _wrote(self, done: PoreFiles) -> None:
+        names = some_of([Untranslated(file.name) for file in done.files], NAMED)
+        wrote = message(
+            "gui.files-written", "Wrote {names} in {folder}.", names=names,
+            folder=Untranslated(str(done.files[0].resolve().parent)),
+        )  # fmt: skip
+        self.say("\n".join(map(translated, (wrote, *done.messages))), "warning" if done.messages else "passed")
 
     def _ask_shape(self, words: str, path: Path, shape: Sequence[int] | None, dtype: str | None) -> None:
         self.raw = RawVolumeDialog(words, shape, dtype, self)
@@ -253,6 +314,7 @@ class RockVolumeDialog(SceneDialog):
         assert self._reading is not None
         path, shape, _ = self._reading
         self.volume, self.view, self._reading = volume, None, None
+        self._folder = path.parent
         self._raw_file = path if _is_raw(path) else None
         self.shape_button.setVisible(self._raw_file is not None)
         self.assumed.setVisible(self._raw_file is not None and shape is None)
@@ -264,6 +326,7 @@ class RockVolumeDialog(SceneDialog):
         )
         self.scene.clear()
         self._show_figures([])
+        self._show_settling(None)
         self.key.clear()
         self.old.show_text("")
         self.setWindowTitle(self.tr("Rock volume {name}").format(name=volume.name))
@@ -291,7 +354,7 @@ class RockVolumeDialog(SceneDialog):
         single = len(volume.values) == 1 and path.suffix.lower() in TIFF
         if single:
             words = "\n".join([self.tr("The file has one slice. Open its folder to read all slices."), words])
-        self.say(words, "stale" if single else "none")
+        self.say(words, "warning" if single else "none")
 
     def _file_edges(self) -> tuple[float, float, float] | None:
         """Return the edges of a voxel in metres that the file states, if they are lengths."""
@@ -333,13 +396,16 @@ class RockVolumeDialog(SceneDialog):
         self.say("")
         self.begin(
             pore_view,
-            self.volume.values if self.volume.file is None else self.volume.file,
-            self.low.value(),
-            self.high.value(),
-            self._voxel(),
+            *self._work(),
             on_done=self._found,
             on_stopped=lambda: self.say(self.tr("Stopped. Nothing has changed.")),
         )
+
+    def _work(self) -> tuple[np.ndarray | Path, float, float, tuple[float, ...]]:
+        """Return the voxels and what is stated of them."""
+        assert self.volume is not None
+        source = self.volume.values if self.volume.file is None else self.volume.file
+        return source, self.low.value(), self.high.value(), self._voxel()
 
     def _say_none(self, volume: GreyVolume) -> None:
         """Say that no voxel has the pore values, in the numbers of the fields."""
@@ -358,16 +424,24 @@ class RockVolumeDialog(SceneDialog):
         names, values = np.array(rows, str).reshape(-1, 2).T
         self.table.show_columns([TableColumn(self.tr("Figure"), names), TableColumn(self.tr("Value"), values)])
 
+    def _show_settling(self, view: PoreView | None) -> None:
+        """Show the representative volume, on a tab that is there while it is known."""
+        known = view is not None and view.settling is not None
+        if view is not None and known:
+            self.settling.show_view(view)
+        self.tabs.setTabVisible(self.tabs.indexOf(self.settling), known)
+
     def _found(self, view: PoreView) -> None:
         self.view, self._made = view, self._stated()
         self.scene.show_view(view)
         self._recolour()
         self._show_figures(self._figures(view))
+        self._show_settling(view)
         messages = [translated(text) for text in view.permeability.messages]
         if not len(view.triangles):
             messages.append(self.tr("The volume is too large for a surface; cut out a part of it to see one."))
         text = "\n".join(messages) or self.tr("The pore space connects all faces.")
-        self._verdict = (text, "stale" if messages else "passed")
+        self._verdict = (text, "warning" if messages else "passed")
         self._changed()
 
     def _figures(self, view: PoreView) -> list[tuple[str, str]]:

@@ -278,7 +278,7 @@ class SurveyDialog(SceneDialog):
         """Say what was done, or that the body is out of date, and what is to be checked."""
         warnings = self._warnings()
         text = "\n".join([*(self._out_of_date() or [done]), *warnings])
-        self.say(text, "stale" if warnings or self._stale else "passed")
+        self.say(text, "stale" if self._stale else "warning" if warnings else "passed")
 
     def _out_of_date(self) -> list[str]:
         return [self.tr("The wall distance has changed: make the body again.")] if self._stale else []

@@ -90,9 +90,10 @@ class TaskDialog(QDialog):
         self.sign.setPixmap(icon(mark).pixmap(16) if text else QPixmap())
         layout = self.layout()
         if layout is not None:
-            # Else a long text would squeeze what is above it.
+            # Else a long text would squeeze what is above it; the buttons below stay on the screen.
             layout.activate()
-            self.resize(self.width(), max(self.height(), layout.totalHeightForWidth(self.width())))
+            tall = min(layout.totalHeightForWidth(self.width()), self.screen().availableSize().height())
+            self.resize(self.width(), max(self.height(), tall))
 
     def begin(
         self,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QFrame, QPushButton, QScrollArea, QTabWidget, QVBoxLayout, QWidget
 
 from geofit.data.accuracy import Accuracy
@@ -13,6 +14,7 @@ from geofit.gui.panels.data_point import DataPointPage
 from geofit.gui.panels.effect import Effect
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
+from geofit.gui.text_size import sized_by_text
 from geofit.project.provenance import Row
 
 __all__ = ["AdjustPanel"]
@@ -41,6 +43,8 @@ class AdjustPanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._surface: HorizonFit | None = None
+        #: The check after the edit that was applied last: its effect is shown until something else is.
+        self._applied: Accuracy | None = None
         self.control, self.point = ControlPointPage(), DataPointPage()
         self.ways = QTabWidget()
         self.ways.addTab(self.control, self.tr("Control point"))
@@ -67,7 +71,7 @@ class AdjustPanel(QWidget):
         scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         # What is in it is never cut off at the right: there is no bar to reach it by.
-        scroll.setMinimumWidth(page.minimumSizeHint().width())
+        sized_by_text(page, lambda: scroll.setMinimumWidth(page.minimumSizeHint().width()))
         self.pages = Placeholder(scroll, self)
         self._pause = QTimer(self, singleShot=True, interval=PAUSE)
         self._pause.timeout.connect(self._want)
@@ -97,7 +101,11 @@ class AdjustPanel(QWidget):
             return
         self.control.show_surface(surface)
         self.point.show_surface(surface)
-        self._rest()
+        if surface.accuracy is not None and surface.accuracy is self._applied:
+            self._pause.stop()
+            self._enable()
+        else:
+            self._rest()
         self.pages.reveal()
 
     def choose_control(self, patch: str, i: int, j: int) -> None:
@@ -106,15 +114,26 @@ class AdjustPanel(QWidget):
             self.ways.setCurrentWidget(self.control)
             self._rest()
 
-    def choose_point(self, index: int | None) -> None:
-        """Choose a data point; nothing is emitted."""
-        self.point.choose(index)
-        self.ways.setCurrentWidget(self.control if index is None else self.point)
+    def choose_point(self, index: int | None, absent: str = "") -> None:
+        """Choose a data point; ``absent`` states why the surface cannot be moved to it. Its effect is asked for."""
+        self.point.choose(index, absent)
+        self.ways.setCurrentWidget(self.point)
         self._rest()
+        self._begin()
 
-    def show_effect(self, before: Accuracy, after: Accuracy | None) -> None:
-        """Show what the change would do to the check; None while nothing is known."""
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
+        """Ask for the effect on a data point that was chosen while nobody saw the panel."""
+        super().showEvent(event)
+        self._begin()
+
+    def show_effect(self, before: Accuracy, after: Accuracy) -> None:
+        """Show what the change would do to the check."""
         self.effect.show_effect(before, after)
+
+    def show_applied(self, before: Accuracy, after: Accuracy) -> None:
+        """Show what an edit did to the check, until another surface is shown or something else is edited."""
+        self._applied = after
+        self.effect.show_effect(before, after, applied=True)
 
     def show_move(self, before: Accuracy, after: MoveEffect) -> None:
         """Show the figures of a move of the control point, while it goes on."""
@@ -127,13 +146,27 @@ class AdjustPanel(QWidget):
     def _rest(self) -> None:
         """Forget the effect that was asked for; what is chosen now has not been edited."""
         self._pause.stop()
-        self.effect.clear()
+        self._forget()
         self._enable()
+
+    def _forget(self) -> None:
+        """Say how an effect is seen."""
+        self._applied = None
+        self.effect.say(
+            self.tr("Effect: move the control point to see the deviation before and after.")
+            if self.ways.currentWidget() is self.control
+            else self.tr("Effect: choose a data point to see the deviation before and after.")
+        )
+
+    def _begin(self) -> None:
+        """Ask for the effect on the chosen data point, which needs no edit, where it is seen."""
+        if self.isVisible() and self.ways.currentWidget() is self.point and self._applied is None:
+            self._edited()
 
     def _edited(self) -> None:
         if self._surface is None:
             return
-        self.effect.clear()
+        self._forget()
         self._enable()
         if self.apply_button.isEnabled():
             self._pause.start()

@@ -205,7 +205,7 @@ class ChecksPanel(QWidget):
             name = translated(surface.points.describe(conflict.dropped))
             value = measured(conflict.difference, "m")
             item = self._row(name, None, value, words=translated(conflict.text), word=self.tr("dropped"))
-            item.setIcon(0, icon("stale"))
+            item.setIcon(0, icon("warning"))
             item.setData(0, _POINT, Row.of(surface.points, conflict.dropped))
             rows.append(item)
         return rows
@@ -215,7 +215,7 @@ class ChecksPanel(QWidget):
         item.setFirstColumnSpanned(True)
         item.setToolTip(0, translated(note))
         if note.severity != "info":
-            item.setIcon(0, icon("stale"))
+            item.setIcon(0, icon("warning"))
         return item
 
     def _file(self, back: ReadBack | None) -> list[QTreeWidgetItem]:

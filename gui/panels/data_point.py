@@ -57,15 +57,15 @@ class DataPointPage(QWidget):
         row = None if former is None or self.point is None else Row.of(former.points, self.point)
         self.choose(None if row is None else row.find(surface.points))
 
-    def choose(self, index: int | None) -> None:
-        """Choose a data point; nothing is emitted."""
+    def choose(self, index: int | None, absent: str = "") -> None:
+        """Choose a data point; nothing is emitted. ``absent`` states why the surface has no point that was chosen."""
         self.point = index
         self.share.setEnabled(index is not None)
         surface = self._surface
         if surface is None or surface.accuracy is None:
             return
         if index is None:
-            self.about.setText(self.tr("Choose a point in the view or in the residual table."))
+            self.about.setText(absent or self.tr("Choose a point in the view or in the residual table."))
             return
         words = self.tr("{point}\nElevation {z:.3f} m\nResidual {d:+.3f} m").format(
             point=translated(surface.points.describe(index)),

@@ -31,11 +31,6 @@ class Effect(QFrame):
         self.words = QLabel()
         self.words.setWordWrap(True)
         self._grid.addWidget(self.words, 5, 0, 1, 3)
-        self.clear()
-
-    def clear(self) -> None:
-        """Show that no effect is known."""
-        self.say(self.tr("Effect: move the control point to see the deviation before and after."))
 
     def say(self, text: str) -> None:
         """Show a sentence instead of figures."""
@@ -44,26 +39,28 @@ class Effect(QFrame):
         self.words.setText(text)
         self.words.show()
 
-    def show_effect(self, before: Accuracy, after: Accuracy | None) -> None:
-        """Show both checks."""
-        if after is None:
-            self.clear()
-            return
-        self._show_rows(before, after)
+    def show_effect(self, before: Accuracy, after: Accuracy, *, applied: bool = False) -> None:
+        """Show both checks, of a change that is tried, or ``applied`` already."""
+        self._show_rows(before, after, title=self.tr("Applied") if applied else self.tr("Effect"))
         verdict = self.tr("{before} → {after}").format(before=before.verdict, after=after.verdict)
         self.words.setText(verdict)
-        self.words.setVisible(before.passed != after.passed)
+        # Another control error may have been set between them: then it is not the change that turned the verdict.
+        self.words.setVisible(before.passed != after.passed and before.epsilon == after.epsilon)
 
     def show_move(self, before: Accuracy, after: MoveEffect) -> None:
         """Show the figures of a move that goes on; its verdict is not known yet."""
         count = before.over["epsilon"].count if "epsilon" in before.over else 0
-        self._show_rows(before, after, (self.tr("points beyond ε"), str(count), str(after.beyond)))
+        self._show_rows(
+            before, after, (self.tr("points beyond ε"), str(count), str(after.beyond)), title=self.tr("Effect")
+        )
         self.words.hide()
 
-    def _show_rows(self, before: Accuracy, after: Accuracy | MoveEffect, *more: tuple[str, str, str]) -> None:
+    def _show_rows(
+        self, before: Accuracy, after: Accuracy | MoveEffect, *more: tuple[str, str, str], title: str
+    ) -> None:
         worst = before.worst[0] if before.worst else None
         rows: list[tuple[str, str, str]] = [
-            (self.tr("Effect"), self.tr("before"), self.tr("after")),
+            (title, self.tr("before"), self.tr("after")),
             (self.tr("σ, m"), _figure(before.sigma), _figure(after.sigma)),
             (self.tr("max |d|, m"), _figure(before.max_abs), _figure(after.max_abs)),
         ]

@@ -41,7 +41,13 @@ class NumberField(QWidget):
     def put(self, value: Any) -> None:
         """Show a number without emitting."""
         if self.value() != value:
-            self.edit.setText(f"{value:g}" if isinstance(value, float) else str(value))
+            self.edit.setText(_shortest(value) if isinstance(value, float) else str(value))
+
+
+def _shortest(value: float) -> str:
+    """Return a number in as few digits as give it back: a form that rounds would apply another one."""
+    short = f"{value:g}"
+    return short if float(short) == value else repr(value)
 
 
 class ChoiceField(QWidget):
@@ -156,7 +162,7 @@ class NumbersField(QWidget):
         """Show numbers without emitting."""
         if self.value() != value:
             flat = [] if value == self._empty else [x for one in value for x in (one if self._rows else (one,))]
-            self.edit.setText(" ".join(f"{x:.10g}" for x in flat))
+            self.edit.setText(" ".join(_shortest(float(x)) for x in flat))
 
 
 class CoreField(ChoiceField):

@@ -86,10 +86,12 @@ class FitPanel(QWidget):
     def show_settings(self, name: str, settings: FitSettings, stale: bool = False, locked: bool = False) -> None:
         """Show a horizon's settings; ``stale`` where its surface is older. Without a name nothing is chosen.
 
+        What is written and not applied stays while it is the same horizon: something that ran may have ended.
         ``locked`` while a surface of the project is still being read or made: a fit must wait for it.
         """
         self._locked = locked
         core = self.fields["core"]
+        written = self.form.written(self._settings) if name and name == self._name else set()
         if name != self._name and isinstance(core, CoreField):
             core.forget()
         self._name, self._settings, self._stale = name, settings, stale
@@ -97,13 +99,18 @@ class FitPanel(QWidget):
             self.pages.say(self.tr("No horizon chosen: choose one in the project tree to see how it is fitted."))
             return
         self.title.setText(breakable(self.tr("Fit of {name}").format(name=name)))
-        self._reset()
+        self.form.put(settings, keep=written)
+        self._check()
         self.pages.reveal()
 
     def edited(self) -> FitSettings | None:
         """Return the settings as written in the form; None while one is out of its range."""
         found: FitSettings | None = self.form.edited()
         return found
+
+    def apply(self, name: str) -> bool:
+        """Apply what is written for a horizon, if anything is; False, and nothing done, where it has an error."""
+        return name != self._name or self._apply()
 
     def _make_fields(self) -> None:
         unit = self.tr("m")

@@ -189,9 +189,11 @@ class MorphPanel(QWidget):
         self.where.setText(text)
 
     def set_running(self, running: bool) -> None:
-        """Show Stop in place of Join."""
+        """Show Stop in place of Join; what is joined and how rests meanwhile."""
         self.stop.setVisible(running)
         self.run.setVisible(not running)
+        for widget in (self.list, self.mode, self.pace, self.dates, self.seeds):
+            widget.setEnabled(not running)
 
     def set_ready(self, preview: bool, full: bool) -> None:
         """Enable the slider once there is a preview, and what needs the full grid once that is there."""
@@ -278,7 +280,10 @@ class MorphPanel(QWidget):
         parts = QSplitter(Qt.Orientation.Horizontal)
         parts.setChildrenCollapsible(False)
         parts.addWidget(side)
-        parts.addWidget(right)
+        # Where there is little room nothing lies over another thing.
+        shown = scrolling(right)
+        shown.setMinimumWidth(self.timeline.minimumWidth() + 30)
+        parts.addWidget(shown)
         parts.setSizes([280, 540])
         parts.setStretchFactor(1, 1)
         self.pages = Placeholder(parts, self)

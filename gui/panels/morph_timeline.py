@@ -8,7 +8,18 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPalette, QPen, QPolygonF
+from PySide6.QtGui import (
+    QColor,
+    QFont,
+    QFontMetricsF,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPalette,
+    QPen,
+    QPolygonF,
+)
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from geofit.gui.panels.marks import readable
@@ -18,8 +29,10 @@ __all__ = ["MorphTimeline"]
 
 Floats = NDArray[np.float64]
 
-#: Room for numbers at both sides, for the slider above and the words below, logical pixels.
+#: Least room for numbers at both sides, for the slider above and the words below, logical pixels.
 LEFT, RIGHT, ABOVE, BELOW = 74.0, 96.0, 26.0, 20.0
+#: Between a number and the plot.
+APART = 6.0
 #: Keys move the slider by these shares.
 STEP, PAGE = 0.01, 0.1
 
@@ -37,6 +50,9 @@ class MorphTimeline(QWidget):
         self._taus: Floats = np.zeros(0)
         self._volume: Floats = np.zeros(0)
         self._euler: Floats = np.zeros(0)
+        #: The largest and the least number of each curve.
+        self._volumes: tuple[str, ...] = ()
+        self._numbers: tuple[str, ...] = ()
         self._knots: tuple[float, ...] = ()
         self._names: tuple[str, ...] = ()
         self.setMinimumSize(QSize(260, 96))
@@ -53,6 +69,8 @@ class MorphTimeline(QWidget):
     def show_curves(self, taus: Sequence[float], volume: Sequence[float], euler: Sequence[float]) -> None:
         """Show volume (m3) and Euler number over tau."""
         self._taus, self._volume, self._euler = (np.asarray(v, float) for v in (taus, volume, euler))
+        self._volumes = _numbers("{:,.0f} m³", self._volume)
+        self._numbers = _numbers("{:g}", self._euler)
         self.update()
 
     def put(self, tau: float) -> None:
@@ -64,11 +82,11 @@ class MorphTimeline(QWidget):
         """Paint slider, ticks and curves."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        palette, font = self.palette(), self.font()
-        font.setPointSizeF(font.pointSizeF() * 0.88)
-        painter.setFont(font)
+        palette = self.palette()
+        painter.setFont(self._small())
         text, dim = palette.color(QPalette.ColorRole.WindowText), palette.color(QPalette.ColorRole.Mid)
-        plot, rail = self.plot(), ABOVE / 2
+        plot = self.plot()
+        rail = plot.top() / 2
         blue, red, amber = (readable(colour, palette) for colour in (CORE, FAIL, WARNING))
         painter.setPen(QPen(dim, 1))
         painter.drawRect(plot)
@@ -78,11 +96,12 @@ class MorphTimeline(QWidget):
             x = self._x(knot)
             painter.setPen(QPen(text, 1))
             painter.drawLine(QPointF(x, rail - 6), QPointF(x, rail + 6))
-            width = 90.0
+            width = plot.width() / max(len(self._knots), 1)
             left = min(max(x - width / 2, plot.left()), plot.right() - width)
             align = Qt.AlignmentFlag.AlignLeft if knot == 0 else Qt.AlignmentFlag.AlignRight
             align = align if knot in (0.0, 1.0) else Qt.AlignmentFlag.AlignHCenter
-            painter.drawText(QRectF(left, plot.bottom() + 2, width, BELOW - 2), align, name)
+            name = QFontMetricsF(painter.font()).elidedText(name, Qt.TextElideMode.ElideMiddle, width)
+            painter.drawText(QRectF(left, plot.bottom() + 2, width, self.height() - plot.bottom() - 2), align, name)
         for tau in self.events:
             x = self._x(tau)
             painter.setPen(QPen(amber, 1.5, Qt.PenStyle.DashLine))
@@ -90,11 +109,13 @@ class MorphTimeline(QWidget):
             painter.setBrush(amber)
             painter.setPen(Qt.PenStyle.NoPen)
             painter.drawPolygon(QPolygonF([QPointF(x - 4, 1), QPointF(x + 4, 1), QPointF(x, 8)]))
-        self._curve(painter, self._volume, blue, "{:,.0f} m³", left=True, stepped=False)
-        self._curve(painter, self._euler, red, "{:g}", left=False, stepped=True)
+        self._curve(painter, self._volume, blue, self._volumes, left=True, stepped=False)
+        self._curve(painter, self._euler, red, self._numbers, left=False, stepped=True)
         if len(self._euler):
             painter.drawText(
-                QRectF(plot.right() + 6, 0.0, RIGHT - 6, ABOVE), Qt.AlignmentFlag.AlignVCenter, self.tr("Euler number")
+                QRectF(plot.right() + APART, 0.0, self.width() - plot.right() - APART, plot.top()),
+                Qt.AlignmentFlag.AlignVCenter,
+                self.tr("Euler number"),
             )
         x = self._x(self.tau)
         painter.setPen(QPen(text, 1.2))
@@ -136,7 +157,17 @@ class MorphTimeline(QWidget):
 
     def plot(self) -> QRectF:
         """Return where tau 0 to 1 runs from the left to the right edge, and the curves are drawn, logical pixels."""
-        return QRectF(LEFT, ABOVE, max(self.width() - LEFT - RIGHT, 10.0), max(self.height() - ABOVE - BELOW, 10.0))
+        metrics = QFontMetricsF(self._small())
+        # No digit of a number is cut off, whatever its length and the size of text.
+        left = max(LEFT, APART + max(map(metrics.horizontalAdvance, self._volumes), default=0.0))
+        right = max(RIGHT, APART + max(map(metrics.horizontalAdvance, (*self._numbers, self.tr("Euler number")))))
+        above, below = max(ABOVE, metrics.height() + 8), max(BELOW, metrics.height() + 4)
+        return QRectF(left, above, max(self.width() - left - right, 10.0), max(self.height() - above - below, 10.0))
+
+    def _small(self) -> QFont:
+        font = QFont(self.font())
+        font.setPointSizeF(font.pointSizeF() * 0.88)
+        return font
 
     def _x(self, tau: float) -> float:
         plot = self.plot()
@@ -148,7 +179,7 @@ class MorphTimeline(QWidget):
         self.moved.emit(self.tau)
 
     def _curve(
-        self, painter: QPainter, values: Floats, colour: QColor, words: str, *, left: bool, stepped: bool
+        self, painter: QPainter, values: Floats, colour: QColor, words: tuple[str, ...], *, left: bool, stepped: bool
     ) -> None:
         """Draw a curve with its least and largest number at its side of the plot."""
         if not len(values):
@@ -166,11 +197,14 @@ class MorphTimeline(QWidget):
         painter.drawPolyline(QPolygonF(points))
         painter.setPen(colour)
         side = Qt.AlignmentFlag.AlignRight if left else Qt.AlignmentFlag.AlignLeft
-        x, width = (0.0, LEFT - 6) if left else (plot.right() + 6, RIGHT - 6)
-        for value, at in ((high, plot.top()), (low, plot.bottom())):
-            if value == low and high == low and at == plot.top():
-                continue
-            box = QRectF(x, at - 8, width, 16)
-            painter.drawText(
-                box, side | Qt.AlignmentFlag.AlignVCenter, words.format(value).replace(",", "\N{NO-BREAK SPACE}")
-            )
+        x = 0.0 if left else plot.right() + APART
+        width, height = (plot.left() - APART if left else self.width() - x), QFontMetricsF(painter.font()).height()
+        for number, at in zip(words, (plot.top(), plot.bottom()) if high > low else (plot.bottom(),), strict=False):
+            box = QRectF(x, at - height / 2, width, height)
+            painter.drawText(box, side | Qt.AlignmentFlag.AlignVCenter, number)
+
+
+def _numbers(words: str, values: Floats) -> tuple[str, ...]:
+    """Write the largest and the least of some values, one number where they are the same."""
+    extremes = dict.fromkeys((float(values.max()), float(values.min()))) if len(values) else {}
+    return tuple(words.format(value).replace(",", "\N{NO-BREAK SPACE}") for value in extremes)

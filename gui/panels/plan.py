@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import Qt, Signal
@@ -19,6 +21,7 @@ from geofit.gui.panels.core_box import CoreBox, core_count, parametrization_of
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.plan_view import PlanData, PlanView
+from geofit.gui.text_size import sized_by_text
 from geofit.gui.translate import translated
 from geofit.report.style import horizon_colours
 from geofit.report.view import rims
@@ -61,9 +64,7 @@ class PlanPanel(QWidget):
             button.setToolTip(about)
             button.setCheckable(key in {"auto", "all", "none", "draw", "area"})
             button.setAutoDefault(False)
-            # Narrow enough for all to are set in two lines of a dock.
-            button.setMinimumWidth(button.fontMetrics().horizontalAdvance(words) + 22)
-            button.setMaximumWidth(button.fontMetrics().horizontalAdvance(words) + 34)
+            sized_by_text(button, partial(_fit_words, button))
             tools.addWidget(button)
             self.buttons[key] = button
         self.reason = QLabel()
@@ -238,3 +239,10 @@ class PlanPanel(QWidget):
         if widened:
             words += " " + self.tr("The fit widens it to the edge of the area if almost no points lie between.")
         self.reason.setText(in_lengths(words) + " " + self.tr("Press Use to take it."))
+
+
+def _fit_words(button: QPushButton) -> None:
+    """Make a button narrow enough for all of them to be in two lines of a dock."""
+    words = button.fontMetrics().horizontalAdvance(button.text())
+    button.setMinimumWidth(words + 22)
+    button.setMaximumWidth(words + 34)

@@ -32,6 +32,7 @@ from geofit.gui.panels.section_painter import (
     thin_names,
 )
 from geofit.gui.panels.section_scale import automatic, grown, window
+from geofit.gui.text_size import sized_by_text
 from geofit.gui.translate import failure
 from geofit.gui.worker import Task, run
 from geofit.project.provenance import Row
@@ -393,7 +394,7 @@ def _spin(low: float, high: float, step: float, unit: str, longest: str) -> QDou
     spin.setSuffix(unit)
     spin.setKeyboardTracking(False)
     spin.setAlignment(Qt.AlignmentFlag.AlignRight)
-    spin.setFixedWidth(spin.fontMetrics().horizontalAdvance(longest) + 30)
+    sized_by_text(spin, lambda: spin.setFixedWidth(spin.fontMetrics().horizontalAdvance(longest) + 30))
     return spin
 
 

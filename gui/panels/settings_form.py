@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -74,6 +74,8 @@ class SettingsForm(QWidget):
         words, about = translated(self._texts[name].label), translated(self._texts[name].about)
         label, error = QLabel(words), QLabel()
         label.setBuddy(field)
+        # In large text it takes two lines rather than losing its end.
+        label.setWordWrap(True)
         label.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
         label.setMinimumWidth(40)
         error.setWordWrap(True)
@@ -95,10 +97,15 @@ class SettingsForm(QWidget):
             QWidget.setTabOrder(target, self.more)
         self.fields[name], self.errors[name] = field, error
 
-    def put(self, settings: Any) -> None:
-        """Show settings without emitting."""
+    def put(self, settings: Any, keep: Collection[str] = ()) -> None:
+        """Show settings without emitting, but in the fields to ``keep``."""
         for name, field in self.fields.items():
-            field.put(getattr(settings, name))
+            if name not in keep:
+                field.put(getattr(settings, name))
+
+    def written(self, base: Any) -> set[str]:
+        """Return the names of fields in which something else is written than ``base`` has."""
+        return {name for name, field in self.fields.items() if field.value() != getattr(base, name)}
 
     def edited(self) -> Any | None:
         """Return the settings as written in the form; None while one is out of its range."""

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import (
     QAbstractTableModel,
+    QEvent,
     QItemSelection,
     QItemSelectionModel,
     QModelIndex,
@@ -242,6 +243,9 @@ class DataTable(QTableView):
 
     chosen = Signal(int)
 
+    #: Whether the columns are as wide as their cells, and put apart; also before the table is made.
+    _sized = _spaced = False
+
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.rows = ArrayModel(self)
@@ -275,7 +279,6 @@ class DataTable(QTableView):
         self.export_action.triggered.connect(self._ask_where)
         self.addAction(self.copy_action)
         self._silent = False
-        self._sized = self._spaced = False
         self._selection.currentRowChanged.connect(self._tell)
 
     def show_columns(self, columns: Sequence[TableColumn], struck: NDArray[np.bool_] | None = None) -> None:
@@ -288,6 +291,16 @@ class DataTable(QTableView):
             self._sized = self.rows.total > 0
             self._spaced = False
             self._space()
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Follow the size of text: neither a row nor a column cuts it off."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            self.verticalHeader().setDefaultSectionSize(self.fontMetrics().height() + 6)
+            if self._sized:
+                self.resizeColumnsToContents()
+                self._spaced = False
+                self._space()
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
         """Put the columns apart once there is room."""

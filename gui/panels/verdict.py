@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtCore import QEvent, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPalette, QPen
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QSizePolicy, QWidget
 
@@ -45,13 +45,7 @@ class VerdictBadge(QFrame):
         super().__init__(parent)
         self.mark, self._word, self._more, self._old = _Mark(26), QLabel(), QLabel(), QLabel()
         self.lamps = [(_Mark(18), QLabel()) for _ in range(3)]
-        font = self._word.font()
-        font.setPointSizeF(font.pointSizeF() * 1.3)
-        font.setBold(True)
-        self._word.setFont(font)
-        small = self._more.font()
-        small.setPointSizeF(small.pointSizeF() * 0.92)
-        self._more.setFont(small)
+        self._size_texts()
         texts = (*(label for _, label in self.lamps), self._more, self._old)
         for label in texts:
             label.setWordWrap(True)
@@ -141,6 +135,20 @@ class VerdictBadge(QFrame):
             label.setText(_unbroken(in_lengths(translated(lamps[k].text))) if shown else "")
             label.setToolTip(translated(lamps[k].title) if shown else "")
             mark.update()
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Follow the size of text."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            self._size_texts()
+
+    def _size_texts(self) -> None:
+        """Write the word large, and what is behind it a little smaller than other text."""
+        for label, share in ((self._word, 1.3), (self._more, 0.92)):
+            font = self.font()
+            font.setPointSizeF(font.pointSizeF() * share)
+            font.setBold(label is self._word)
+            label.setFont(font)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
         """Paint the ground: tinted, barred at the left; hatched where stale."""

@@ -212,7 +212,7 @@ class ImportWizard(TaskDialog):
         if self._unsettled(draft):
             return "failed"
         if draft.fault or draft.bad_cells() or draft.exchanged:
-            return "stale"
+            return "warning"
         return "passed" if draft.used else "none"
 
     def _list(self) -> None:
@@ -245,7 +245,7 @@ class ImportWizard(TaskDialog):
         elif not self._ready:
             self.say(self.tr("Every table is left out: there is nothing to read."))
         elif target.exists() and target not in self._made:
-            self.say(self.tr("{name} already exists and will be overwritten.").format(name=target.name), "stale")
+            self.say(self.tr("{name} already exists and will be overwritten.").format(name=target.name), "warning")
         else:
             used = sum(draft.used for draft in self._drafts)
             self.say(self.tr("Ready. Tables that will be read: {count}.").format(count=used), "passed")

@@ -26,7 +26,7 @@ from geofit.report import digits
 __all__ = ["ResultPage"]
 
 _ORDER = {"error": 0, "warning": 1, "note": 2}
-_MARK = {"error": "failed", "warning": "stale", "note": "none"}
+_MARK = {"error": "failed", "warning": "warning", "note": "none"}
 #: Widest column of reasons: what to do about them must be seen beside it.
 _REASON = 330
 

@@ -162,6 +162,51 @@ def test_a_new_surface_keeps_the_choice_and_drops_the_move(panel):
     assert panel.control.z.value() == pytest.approx(patch.control[i, j, 2] + surface.origin[2] + 0.5, abs=0.3)
 
 
+def figures(panel):
+    return [[label.text() for label in row] for row in panel.effect.cells if row[0].isVisible()]
+
+
+def test_the_effect_of_an_edit_that_was_applied_stays_until_another_surface_comes(panel):
+    surface = fitted()
+    panel.show_surface(surface)
+    patch, i, j = free_control(surface)
+    panel.choose_control(patch.name, i, j)
+    panel.control.dz.setValue(5.0)
+    changed = adjust(surface, patch.name, i, j, 5.0)
+    panel.show_applied(surface.accuracy, changed.accuracy)
+    panel.show_surface(changed)
+    shown = figures(panel)
+    assert shown[0][0] == "Applied"
+    assert shown[1][1] != shown[1][2]
+    assert not panel.apply_button.isEnabled()
+    panel.show_surface(surface)
+    assert figures(panel) == []
+
+
+def test_the_effect_on_a_data_point_is_asked_for_as_soon_as_it_is_chosen(panel, qtbot):
+    surface = fitted()
+    panel.show_surface(surface)
+    with qtbot.waitSignal(panel.move_wanted, timeout=2000) as told:
+        panel.choose_point(surface.accuracy.worst[0])
+    assert told.args == [surface.accuracy.worst[0], 1.0]
+    # Nobody pays for it while the panel is behind others; it comes with the panel.
+    panel.hide()
+    with qtbot.assertNotEmitted(panel.move_wanted, wait=600):
+        panel.choose_point(surface.accuracy.worst[1])
+    with qtbot.waitSignal(panel.move_wanted, timeout=2000) as told:
+        panel.show()
+    assert told.args == [surface.accuracy.worst[1], 1.0]
+
+
+def test_a_point_that_the_surface_lacks_is_not_asked_for_again(panel):
+    panel.show_surface(fitted())
+    panel.choose_point(None, "picks.csv row 7 is not among the points.")
+    assert panel.ways.currentWidget() is panel.point
+    assert "row 7" in panel.point.about.text()
+    assert not panel.apply_button.isEnabled()
+    assert "control point" not in panel.effect.words.text()
+
+
 def test_a_steep_fault_can_be_chosen(panel):
     panel.show_surface(fitted(FAULT))
     assert str(panel.pages.text) == ""

@@ -58,6 +58,31 @@ def test_every_setting_goes_in_and_comes_out_again(panel, settings):
     assert not panel.apply_button.isEnabled()
 
 
+def test_a_number_of_many_digits_is_not_rounded(panel):
+    settings = FitSettings(epsilon=1 / 3, interior_tolerance=0.12345678, smoothing=1e-7 / 3)
+    panel.show_settings("W", settings)
+    assert panel.edited() == settings
+    assert "Not applied" not in panel.banner.text
+
+
+def test_what_is_written_stays_when_something_else_ends(panel, qtbot):
+    """A fit or an examination in the background shows the horizon anew when it ends."""
+    type_in(qtbot, panel, "epsilon", "0.3")
+    panel.show_settings("T3-T2", FitSettings(), True)
+    assert panel.edited() == FitSettings(epsilon=0.3)
+    assert panel.apply_button.isEnabled()
+    # Another setting of the horizon came from elsewhere, as its core does from the plan.
+    panel.show_settings("T3-T2", FitSettings(core="all"))
+    assert panel.edited() == FitSettings(epsilon=0.3, core="all")
+    click(qtbot, panel.apply_button)
+    # Undone, there is nothing written any more.
+    panel.show_settings("T3-T2", FitSettings(core="all"))
+    assert panel.edited() == FitSettings(core="all")
+    type_in(qtbot, panel, "epsilon", "0.7")
+    panel.show_settings("W", FitSettings())
+    assert panel.edited() == FitSettings()
+
+
 def test_a_drawn_core_is_named_by_its_corners(panel):
     panel.show_settings("W", FitSettings(core=CORNERS))
     assert panel.fields["core"].box.currentText() == "Drawn, 4 corners"

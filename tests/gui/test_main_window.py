@@ -74,6 +74,26 @@ def test_what_needs_surfaces_can_be_done_once_there_are_as_many(app, small):
     assert enabled() == of_any | {"seams"}, "what is switched on can be switched off"
 
 
+def test_the_menu_fits_with_what_the_panel_shows_as_its_button_does(app, small):
+    app.window.files.open(small)
+    app.idle()
+    panel, document = app.window.panels.fit, app.document
+    panel.fields["epsilon"].edit.setText("-1")
+    app.trigger("fit")
+    app.idle()
+    assert document.surface("up") is None
+    assert "out of its range" in app.window.statusBar().currentMessage()
+    panel.fields["epsilon"].edit.setText("0.25")
+    app.trigger("fit")
+    # What is written while it runs is still there when it has ended.
+    panel.fields["interior_tolerance"].edit.setText("0.125")
+    app.idle()
+    assert document.surface("up").settings.epsilon == 0.25
+    assert document.settings("up").interior_tolerance != 0.125
+    assert panel.edited().interior_tolerance == 0.125
+    assert panel.apply_button.isEnabled()
+
+
 def test_every_action_has_words_a_tip_and_a_key_of_its_own(app):
     keys = {}
     for name, action in app.window.actions_.all().items():

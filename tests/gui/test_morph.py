@@ -181,6 +181,37 @@ def test_what_is_never_reached_is_told_before_the_run(bodies, tmp_path):
     assert bodies.morphing.view.full is not None
 
 
+def test_frames_that_were_stopped_are_said_to_lack_and_can_be_made(bodies):
+    panel, morphing = bodies.panel, bodies.morphing
+    check(bodies, "ball", "ring")
+    bodies.qtbot.mouseClick(panel.run, Qt.MouseButton.LeftButton)
+    for field in (panel.list, panel.mode, panel.pace, panel.dates, panel.seeds):
+        assert not field.isEnabled()
+    bodies.qtbot.waitUntil(lambda: morphing.view is not None, timeout=60_000)
+    bodies.qtbot.mouseClick(panel.stop, Qt.MouseButton.LeftButton)
+    bodies.idle()
+    assert morphing.view.full is None
+    assert "not made" in panel.said.text()
+    assert panel.mode.isEnabled()
+    assert not panel.take.isEnabled()
+    bodies.qtbot.mouseClick(panel.run, Qt.MouseButton.LeftButton)
+    bodies.idle()
+    assert morphing.view.full is not None
+    assert not panel.said.isVisible()
+
+
+def test_a_way_whose_body_went_meanwhile_is_not_shown(bodies):
+    panel, morphing = bodies.panel, bodies.morphing
+    check(bodies, "ball", "ring")
+    bodies.qtbot.mouseClick(panel.run, Qt.MouseButton.LeftButton)
+    assert bodies.window.activity.busy
+    bodies.window.bodies.styles.delete("ring")
+    bodies.idle()
+    assert morphing.view is None
+    assert not panel.timeline.isEnabled()
+    assert "morph" not in bodies.window.panels.view.layers
+
+
 def test_notes_on_the_full_grid_are_shown(bodies, tmp_path):
     """A part of 20 m in bodies of 520 m is 5 of its cells thick: as the command line says, so does the panel."""
     for name, radius in (("old", 9.0), ("new", 10.0)):

@@ -109,6 +109,33 @@ def test_an_order_that_was_checked_is_forgotten_with_another_order(crossing):
     assert not crossing.window.showing.orders
 
 
+def test_the_stated_order_counts_in_the_verdict_as_soon_as_both_horizons_are_fitted(app):
+    """As in a run of the whole site: PASS in the window and WARNING in the report would be two verdicts."""
+    settings = FitSettings(core="none")
+    points = {"up": scattered(1, 0.1), "low": scattered(2, 0.0)}
+    app.desktop.session.begin(Site("Dam", points, dict.fromkeys(points, settings), order=("up", "low")), None)
+    showing = app.window.showing
+
+    def failed():
+        return str(showing.verdict("up").checks.text).endswith("order")
+
+    app.window.fitting.fit("up")
+    app.idle()
+    assert not failed()
+    app.window.fitting.fit("low")
+    app.qtbot.waitUntil(lambda: bool(showing.orders), timeout=60_000)
+    assert failed()
+    assert showing.verdict("up").word == "WARNING"
+    app.window.fitting.exclude("up", (Row.of(app.document.site.horizons["up"], 3),))
+    app.window.fitting.fit("up")
+    app.idle()
+    app.qtbot.waitUntil(lambda: bool(showing.orders) and app.window.ordering.idle, timeout=60_000)
+    made = app.document.state.provenances
+    assert failed()
+    app.window.session.stack.undo()
+    app.qtbot.waitUntil(lambda: app.document.state.provenances != made and bool(showing.orders), timeout=60_000)
+
+
 def test_the_order_that_a_site_states_counts_wherever_its_files_list_the_horizons(app):
     settings = FitSettings(core="none")
     points = {"low": scattered(2, 0.0), "cut": scattered(3, 9.0), "up": scattered(1, 5.0)}

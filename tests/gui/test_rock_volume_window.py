@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import gzip
+import json
 import weakref
 import zipfile
 
@@ -11,12 +12,18 @@ import numpy as np
 import pytest
 from chambers import chambers
 from PySide6.QtCore import QCoreApplication, QEvent, Qt, QTimer
-from PySide6.QtWidgets import QApplication, QDialogButtonBox, QFileDialog, QLabel, QWidget
+from PySide6.QtWidgets import QApplication, QDialogButtonBox, QFileDialog, QLabel, QMessageBox, QWidget
 
+from geofit.data.languages import EN
 from geofit.gui.dialogs.rock_volume import RockVolumeDialog
 from geofit.gui.help import Help
 from geofit.gui.language import apply_language
+from geofit.gui.panels.marks import icon
 from geofit.gui.theme import apply_theme
+from geofit.pores.representative import representative_volume
+from geofit.pores.volume import RockVolume
+from geofit.project.pore_files import pore_files
+from geofit.report.pores_chapter import settling_sentence
 
 
 def read(qtbot, rock_volume, path):
@@ -355,3 +362,69 @@ def test_edges_that_are_no_lengths_are_asked_for(qtbot, rock_volume, tmp_path, h
 def test_an_edge_that_the_file_states_is_not_rounded_away(qtbot, rock_volume, tmp_path, millimetres, text):
     read(qtbot, rock_volume, anisotropic(tmp_path / "a.mha", " ".join([millimetres] * 3)))
     assert rock_volume.edge.text() == text
+
+
+def test_files_and_report_are_written_of_the_pores_that_are_shown(qtbot, rock_volume, tmp_path, here, monkeypatch):
+    out = tmp_path / "out"
+    out.mkdir()
+    assert not rock_volume.export.isEnabled()
+    found(qtbot, rock_volume, tmp_path / "rock.npy")
+    monkeypatch.setattr(QFileDialog, "getExistingDirectory", lambda *_: str(out))
+    for button, report in ((rock_volume.export, False), (rock_volume.report, True)):
+        before = set(out.iterdir())
+        assert button.isEnabled()
+        qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+        qtbot.waitUntil(lambda: not rock_volume.running and bool(rock_volume.message.text()), timeout=120_000)
+        written = set(out.iterdir()) - before
+        assert written == set(pore_files(out, "rock", chambers().shape, report=report))
+        assert str(out) in rock_volume.message.text()
+    figures = json.loads((out / "rock.json").read_text("utf-8"))
+    assert figures["porosity"] == pytest.approx((chambers() == 0).mean())
+    assert figures["voxel"] == pytest.approx([2e-6] * 3)
+    # What is there already is replaced only if that is wanted.
+    (out / "rock.json").write_text("mine", "utf-8")
+    monkeypatch.setattr(QMessageBox, "exec", lambda _: QMessageBox.StandardButton.No)
+    qtbot.mouseClick(rock_volume.export, Qt.MouseButton.LeftButton)
+    assert not rock_volume.running
+    assert (out / "rock.json").read_text("utf-8") == "mine"
+    # Of pores that are out of date there are none.
+    rock_volume.edge.setValue(3)
+    assert not rock_volume.export.isEnabled()
+    assert not rock_volume.report.isEnabled()
+
+
+def test_the_representative_volume_is_that_of_the_report(qtbot, rock_volume, tmp_path, here):
+    tabs, place = rock_volume.tabs, rock_volume.tabs.indexOf(rock_volume.settling)
+    assert not tabs.isTabVisible(place)
+    found(qtbot, rock_volume, tmp_path / "rock.npy")
+    volume = RockVolume(chambers(), pore=0, voxel=2e-6)
+    settling = representative_volume(volume)
+    assert tabs.isTabVisible(place)
+    np.testing.assert_array_equal(rock_volume.view.settling.mean, settling.mean)
+    assert rock_volume.settling.words.text() == settling_sentence(settling, volume.porosity, EN)
+    tabs.setCurrentIndex(place)
+    qtbot.waitUntil(lambda: bool(rock_volume.settling.canvas.figure.axes))
+    read(qtbot, rock_volume, labels(tmp_path / "second.npy"))
+    assert not tabs.isTabVisible(place)
+
+
+def test_a_large_volume_has_files_and_no_report(qtbot, rock_volume, tmp_path, here, monkeypatch):
+    monkeypatch.setattr("geofit.project.pore_view.LARGE", 1000)
+    found(qtbot, rock_volume, tmp_path / "rock.npy")
+    assert not rock_volume.report.isEnabled()
+    assert "too large" in rock_volume.report.toolTip()
+    assert not rock_volume.tabs.isTabVisible(rock_volume.tabs.indexOf(rock_volume.settling))
+    rock_volume.write(tmp_path / "out")
+    qtbot.waitUntil(lambda: not rock_volume.running and bool(rock_volume.message.text()), timeout=120_000)
+    assert set((tmp_path / "out").iterdir()) == set(pore_files(tmp_path / "out", "rock", chambers().shape))
+
+
+def test_a_warning_has_the_mark_of_warnings(qtbot, rock_volume, tmp_path, monkeypatch):
+    image = pytest.importorskip("PIL.Image", reason="Pillow reads TIFF")
+    marks = []
+    monkeypatch.setattr(
+        "geofit.gui.dialogs.task_dialog.icon", lambda name: marks.append(name) or icon(name), raising=True
+    )
+    image.fromarray(chambers()[0]).save(tmp_path / "slice_000.tif")
+    read(qtbot, rock_volume, tmp_path / "slice_000.tif")
+    assert marks[-1] == "warning"

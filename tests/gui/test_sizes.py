@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from panel_samples import SITE, sample_site
+from panel_samples import SITE, fitted, sample_site
 from PySide6.QtCore import QSize
-from PySide6.QtWidgets import QApplication, QComboBox, QDialog
+from PySide6.QtGui import QFontMetricsF
+from PySide6.QtWidgets import QApplication, QComboBox, QDialog, QLabel
 
 from geofit.gui.dialogs.preferences import PreferencesDialog
 from geofit.gui.dialogs.rock_volume import RockVolumeDialog
 from geofit.gui.dialogs.scene_dialog import SceneDialog
 from geofit.gui.dialogs.survey import SurveyDialog
 from geofit.gui.main_window import MainWindow
+from geofit.gui.panels.adjust import AdjustPanel
+from geofit.gui.panels.morph_timeline import MorphTimeline
+from geofit.gui.panels.tables import DataTable, TableColumn
+from geofit.gui.panels.verdict import VerdictBadge
 from geofit.gui.preferences import Preferences
+from geofit.gui.theme import set_text_size
 
 
 @pytest.fixture
@@ -109,3 +115,49 @@ def test_a_share_that_nobody_offers_is_the_usual_one():
 
     QSettings().setValue("text_size", 17.0)
     assert Preferences().text_size == 1.0
+
+
+def test_panels_grow_with_the_text(qtbot, qapp, usual_text):
+    panel, badge, table = AdjustPanel(), VerdictBadge(), DataTable()
+    table.show_columns([TableColumn("Residual, m", np.arange(3.0))])
+    for widget in (panel, badge, table):
+        qtbot.addWidget(widget)
+        widget.show()
+    panel.show_surface(fitted())
+    letters = [label.font().pointSizeF() for label in badge.findChildren(QLabel)]
+    column, row = table.columnWidth(0), table.verticalHeader().defaultSectionSize()
+    width = panel.minimumSizeHint().width()
+    set_text_size(qapp, 1.5)
+    inner = panel.control.parentWidget()
+
+    def grown():
+        now = [label.font().pointSizeF() for label in badge.findChildren(QLabel)]
+        assert now == pytest.approx([1.5 * size for size in letters], rel=0.01)
+        assert table.columnWidth(0) > 1.2 * column
+        assert table.verticalHeader().defaultSectionSize() > 1.2 * row
+        # Nothing of it is cut off at the right: there is no bar to reach it by.
+        assert panel.minimumSizeHint().width() >= inner.minimumSizeHint().width() > width
+
+    qtbot.waitUntil(grown)
+
+
+def test_the_buttons_of_a_dialog_stay_on_the_screen_however_long_its_message_is(qtbot):
+    dialog = RockVolumeDialog()
+    qtbot.addWidget(dialog)
+    dialog.show()
+    dialog.say("A reason that goes on and on. " * 900)
+    assert dialog.height() <= dialog.screen().availableSize().height()
+    dialog.close()
+
+
+@pytest.mark.parametrize("size", [1.0, 1.5])
+def test_no_digit_of_a_volume_is_cut_off_at_the_slider(qtbot, qapp, usual_text, size):
+    set_text_size(qapp, size)
+    timeline = MorphTimeline()
+    qtbot.addWidget(timeline)
+    timeline.resize(600, 120)
+    timeline.show_curves([0.0, 1.0], [333_466_885.0, 11_478_812.0], [2.0, 2.0])
+    font = timeline.font()
+    font.setPointSizeF(0.88 * font.pointSizeF())
+    widest = QFontMetricsF(font).horizontalAdvance("333 466 885 m³".replace(" ", "\N{NO-BREAK SPACE}"))
+    assert timeline.plot().left() > widest

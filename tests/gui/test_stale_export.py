@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import json
+from types import SimpleNamespace
 
 import pytest
 
+from geofit.data.accuracy import Check
+from geofit.data.messages import message
 from geofit.gui.dialogs.export_step import ExportDialog
 from geofit.gui.dialogs.plan_sheet import PlanSheetDialog
 from geofit.gui.dialogs.report import ReportDialog
 from geofit.gui.dialogs.section_sheet import SectionSheetDialog
+from geofit.gui.worker import run
+from geofit.project.body_export import BodyExport
 
 pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
 
@@ -119,3 +124,30 @@ def test_a_sheet_warns_of_the_stale_horizon_before_it_is_written_and_on_its_page
     pages = [page.get_textpage().get_text_range() for page in sheet]
     sheet.close()
     assert ["earlier data or settings): T2." in text for text in pages] == [True, False][: len(pages)]
+
+
+def test_a_body_whose_file_fails_its_checks_stays_in_the_log(app, stale, tmp_path, monkeypatch, caplog):
+    failed = Check("closed", False, 2.0, 0.0, "", message("test.open", "2 edges are open"))
+    found = BodyExport(tmp_path / "ore.step", SimpleNamespace(checks=(failed,), faces=7))
+    body = SimpleNamespace(stale=("data",))
+    monkeypatch.setattr("geofit.gui.bodies.dated_body", lambda *_: body)
+    monkeypatch.setattr("geofit.gui.bodies.export_body", lambda *_, progress: found)
+    monkeypatch.setattr("geofit.gui.activity.run_in_process", run)
+    app.window.bodies.export("ORE", tmp_path / "ore.step")
+    app.idle()
+    warned = [one.getMessage() for one in caplog.records if one.levelname == "WARNING"]
+    assert any("2 edges are open" in text for text in warned)
+    assert any("ORE" in text and "Fit again" in text for text in warned)
+    app.qtbot.waitUntil(app.window.panels.log.isVisible)
+
+
+def test_the_report_names_a_horizon_that_was_not_fitted(app, stale, tmp_path, monkeypatch, write_report):
+    while app.document.surface("T3") is not None:
+        app.window.session.stack.undo()
+        app.idle()
+    assert app.document.surface("T2") is not None
+    dialog = opened(app, monkeypatch, "report")
+    assert "Not fitted, so not in the report: T3." in dialog.message.text()
+    write_report(dialog, tmp_path / "out", "html")
+    assert "Not fitted, so not in the report: T3." in dialog.message.text()
+    assert "Not fitted, so not in the report: T3." in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")

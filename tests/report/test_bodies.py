@@ -13,7 +13,7 @@ import geofit
 from geofit.data.languages import EN, ZH, sentence
 from geofit.data.messages import message
 from geofit.data.stale import StaleCause
-from geofit.pores.representative import representative_volume
+from geofit.pores.representative import RepresentativeVolume, representative_volume
 from geofit.pores.volume import RockVolume
 from geofit.project.body_run import run_body
 from geofit.project.pores_run import run_pores
@@ -23,6 +23,7 @@ from geofit.report.body_chapter import BodyFindings, body_chapter, body_row
 from geofit.report.chapters import document
 from geofit.report.document import CheckMark, Facts, Heading, Paragraph, Picture, ReportTable
 from geofit.report.gather import accuracy_report
+from geofit.report.pores_chapter import settling_sentence
 from geofit.report.style import PASS
 
 NO_FONT = fonts.chinese_family() is None
@@ -231,3 +232,22 @@ def test_the_report_of_a_rock_volume_has_its_table_sizes_and_percolation(t, tmp_
     assert page.count(word) == 3
     assert page.count(not_word) == 6
     assert page.count("data:image/png") >= 3
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "edge"),
+    [
+        # Alike by chance at 0.2 mm: larger cubes differ again, and one of 0.4 mm is far from the sample.
+        ((0.0, 0.199, 0.1, 0.19, 0.2), (0.6, 0.201, 0.3, 0.21, 0.2), "0.4"),
+        ((0.0, 0.199, 0.195, 0.15, 0.2), (0.6, 0.201, 0.205, 0.15, 0.2), None),
+        # Alike, but all of them less porous than the sample with its rim.
+        ((0.0, 0.15, 0.15, 0.15, 0.2), (0.6, 0.16, 0.16, 0.16, 0.2), None),
+    ],
+)
+def test_cubes_are_representative_only_if_no_larger_one_contradicts(low, high, edge):
+    low, high = np.array(low), np.array(high)
+    settling = RepresentativeVolume(
+        np.array([1e-4, 2e-4, 3e-4, 4e-4, 9e-4]), low, (low + high) / 2, high, np.array([729, 64, 27, 8, 1])
+    )
+    text = settling_sentence(settling, 0.2, EN)
+    assert (f"edge of {edge} mm" in text) if edge else ("No cube" in text)
