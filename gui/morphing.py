@@ -292,7 +292,7 @@ class Morphing(QObject):
         self._show_full(view)
 
     def _ended(self) -> None:
-        """Offer Join again; of frames that were stopped, or failed, say that they lack."""
+        """Offer Join again; where frames were stopped or failed, state that they are missing."""
         self._panel.set_running(False)
         making, self._making = self._making, None
         if making is not None and self.view is not None:

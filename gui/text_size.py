@@ -18,7 +18,7 @@ class _Listener(QObject):
         widget.installEventFilter(self)
 
     def eventFilter(self, _: QObject, event: QEvent) -> bool:  # noqa: N802
-        # What is in the widget hears of another font later, and lays itself out again.
+        # Its children get the new font later, and ask for another layout then.
         if event.type() in (QEvent.Type.FontChange, QEvent.Type.LayoutRequest):
             self._later.start()
         return False
