@@ -105,7 +105,7 @@ class Problem:
             "fitting.neighbours-contradict",
             "points not met, because they contradict those around them ({count}: {names}); through one of them and a "
             "close neighbour the surface would be steeper than 45°, or it lies {times:g} times as far from the field "
-            "as most do (strict meets them where knots allow)",
+            "as most do (strict meets them where knots allow, robust takes outliers out of the fit)",
             count=len(torn),
             names=names_of(self.points, torn),
             times=BLUNDER,
