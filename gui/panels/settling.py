@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtWidgets import QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from geofit.gui.panels.canvas import PlotCanvas, PlotColours, place_axes, recolour
+from geofit.gui.text_size import sized_by_text
 from geofit.gui.translate import user_language
 from geofit.project.pore_view import PoreView
 from geofit.report.pores_chapter import settling_sentence
@@ -24,6 +25,8 @@ class SettlingPanel(QWidget):
         # What its size hint asks for would leave nothing to the 3D view above.
         self.canvas.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)
         self.canvas.setAccessibleName(self.tr("Porosity of cubes by their edge"))
+        # A tab does not ask how high its words are at its width: of two lines it would cut the curve.
+        sized_by_text(self.words, lambda: self.words.setMinimumHeight(2 * self.words.fontMetrics().lineSpacing()))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(6, 6, 6, 0)
         layout.addWidget(self.words)

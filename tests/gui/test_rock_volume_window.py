@@ -404,6 +404,8 @@ def test_the_representative_volume_is_that_of_the_report(qtbot, rock_volume, tmp
     assert rock_volume.settling.words.text() == settling_sentence(settling, volume.porosity, EN)
     tabs.setCurrentIndex(place)
     qtbot.waitUntil(lambda: bool(rock_volume.settling.canvas.figure.axes))
+    # However many lines the words take.
+    assert rock_volume.settling.canvas.geometry().bottom() < rock_volume.settling.height()
     read(qtbot, rock_volume, labels(tmp_path / "second.npy"))
     assert not tabs.isTabVisible(place)
 
