@@ -206,8 +206,8 @@ def metaballs(
     centre, radius = polish(centre, radius, stiffness, surface_points(volume.pore, edges))
     polished = replace(greedy, centre=centre * volume.unit, radius=radius * volume.unit)
     # Balls along a tube of one voxel may have gaps that the polished ones close, though they cover more rock.
-    wrong = _parts_wrong(greedy) - _parts_wrong(polished) if polished.dice < greedy.dice else 1
-    return polished if wrong > 0 else greedy
+    better = polished.dice >= greedy.dice or _parts_wrong(polished) < _parts_wrong(greedy)
+    return polished if better else greedy
 
 
 def _parts_wrong(body: FittedMetaballs) -> int:
