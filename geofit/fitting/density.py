@@ -39,7 +39,7 @@ def split_auto(plane: Floats, area: Rectangle, drawn: NDArray[np.bool_] | None =
     The spacing of a point is its distance to the eighth neighbour. The threshold that best separates the
     logarithms of the spacings (Otsu 1979) divides dense from sparse; the largest connected cluster of dense
     points gives the rectangle, and the rectangle must be clearly denser than the rest (:data:`CONTRAST`). ``drawn``
-    (n,) marks the points of named sections: where the cluster is one line, theirs is the rectangle.
+    (n,) marks the points of sections: where the cluster is one line, theirs is the rectangle.
     """
     n = len(plane)
     if n < 2 * FEWEST:
@@ -89,7 +89,10 @@ def split_auto(plane: Floats, area: Rectangle, drawn: NDArray[np.bool_] | None =
         return _uniform(plane, area, message("fitting.dense-points-fill-area", "the dense points fill the area"))
     if inside.sum() > MOST:
         return split_none(plane, _too_many(int(inside.sum())))
-    contrast = inside.sum() / _size(core) * _filled(plane[~inside], area, core) / (~inside).sum()
+    # Sections are drawn where the rock is known best; scattered points are dense only by comparison.
+    sections = drawn is not None and 2 * drawn[inside].sum() > inside.sum()
+    around = _size(area) - _size(core) if sections else _filled(plane[~inside], area, core)
+    contrast = inside.sum() / _size(core) * around / (~inside).sum()
     if contrast < CONTRAST + 10 / np.sqrt(inside.sum()):
         words = message(
             "fitting.densest-part-too-sparse",

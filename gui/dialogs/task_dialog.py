@@ -92,8 +92,10 @@ class TaskDialog(QDialog):
         if layout is not None:
             # Else a long text would squeeze what is above it; the buttons below stay on the screen.
             layout.activate()
-            tall = min(layout.totalHeightForWidth(self.width()), self.screen().availableSize().height())
-            self.resize(self.width(), max(self.height(), tall))
+            wide, most = self.width(), self.screen().availableSize()
+            while layout.totalHeightForWidth(wide) > most.height() and wide < most.width():
+                wide = min(wide * 5 // 4 + 1, most.width())
+            self.resize(wide, max(self.height(), min(layout.totalHeightForWidth(wide), most.height())))
 
     def begin(
         self,
