@@ -51,7 +51,8 @@ def fit_horizon(
     settings : FitSettings, optional
         Tolerances and choices.
     boundary : (k, 2) array_like, optional
-        Corners of the study area in map coordinates. Without it the surface covers the points' rectangle.
+        Corners of the study area in map coordinates. Without it the surface covers the points' rectangle: along the
+        map's axes, the sections, or a tilted strip of points.
     progress : callable, optional
         Called as ``progress(stage, fraction)``; returning False stops the fit.
     name : str
