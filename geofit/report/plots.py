@@ -31,24 +31,35 @@ MANY = 5_000
 LABEL = (0.11, 0.03)
 #: How far below a picture in space its scale stands, as a share of the picture's height.
 BELOW = 0.1
+#: Width that the scale and the words below a picture in space need next to each other, inches.
+WORDS = 5.0
 
 
 def space(axes: Axes, scene: Scene, t: Language = EN) -> None:
     """Show the picture in space with the scale of its colours, and say from where it is seen."""
     axes.imshow(scene.image, interpolation="antialiased")
     axes.set_axis_off()
-    colour_scale(axes, scene.limits, t("Elevation, m"))
-    axes.text(1.0, -BELOW, translate(scene.caption, t), size=7.5, color=MUTED, ha="right", transform=axes.transAxes)
+    # A narrow picture has less room below it than the words need: they go on beside it.
+    tall, wide = scene.image.shape[:2]
+    place, (across, up) = axes.get_position(original=True), axes.get_figure(root=True).get_size_inches()
+    room = place.width * across
+    share = max(min(WORDS, room) / min(room, place.height * up * wide / tall), 1.0)
+    colour_scale(axes, scene.limits, t("Elevation, m"), share)
+    words = translate(scene.caption, t)
+    axes.text(share, -BELOW, words, size=7.5, color=MUTED, ha="right", transform=axes.transAxes)
 
 
-def colour_scale(axes: Axes, limits: tuple[float, float], title: str) -> None:
-    """Put the scale of the colours below a picture in space, where nothing is drawn."""
+def colour_scale(axes: Axes, limits: tuple[float, float], title: str, share: float = 1.0) -> None:
+    """Put the scale of the colours below a picture in space, where nothing is drawn.
+
+    ``share`` is the room for it, as a share of the picture's width.
+    """
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
     from geofit.report.scene import elevation_colours
 
-    scale = axes.inset_axes((0.02, -BELOW, 0.26, 0.022))
+    scale = axes.inset_axes((0.02, -BELOW, 0.26 * share, 0.022))
     colours = ScalarMappable(Normalize(*limits), elevation_colours())
     bar = axes.figure.colorbar(colours, cax=scale, ticks=_ticks(*limits), orientation="horizontal")
     bar.outline.set_visible(False)

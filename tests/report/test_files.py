@@ -6,23 +6,27 @@ import csv
 import json
 import re
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from results import ORIGIN, horizon, patch
 
 import geofit
 from geofit import FitSettings, PointSet
 from geofit.checks.storage import equal_accuracy
 from geofit.data.files import file_stems, replacing
+from geofit.data.languages import EN, ZH
 from geofit.data.site import Hole
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report import fonts, plots, scene
-from geofit.report.pictures import Pictures, draw_pictures, draw_site, write_picture
+from geofit.report.pictures import DOTS, TYPE, WIDTH, Pictures, draw_pictures, draw_site, write_picture
 from geofit.report.result import HorizonResult
 from geofit.report.schema import horizon_document, write_json
-from geofit.report.style import bands
+from geofit.report.style import bands, drawing
 from geofit.report.tables import write_issues, write_residuals
 from geofit.report.view import choose_view, rims
 from geofit.splines import bspline
@@ -250,3 +254,22 @@ def test_without_opengl_the_pictures_say_what_to_install(result, monkeypatch, tm
     write_picture(result, pictures, tmp_path / "r.png")
     assert (tmp_path / "r.png").stat().st_size > 10_000
     assert draw_site([result]).images == {}
+
+
+@pytest.mark.parametrize("wide", [60, 300, 900])
+@pytest.mark.parametrize("t", [EN, ZH], ids=["en", "zh"])
+def test_the_words_below_a_picture_in_space_have_room_however_narrow_it_is(wide, t):
+    image, limits = np.full((600, wide, 3), 90, np.uint8), (1450.0, 1590.0)
+    view = scene.Scene(image, 12, limits, np.zeros(3), np.ones(3), np.eye(2, 4), omitted=128)
+    with drawing(TYPE):
+        figure = Figure(figsize=(WIDTH, 3.7), dpi=DOTS)
+        axes = figure.add_axes((0.0, 0.19, 1.0, 0.81), anchor="NW")
+        plots.space(axes, view, t)
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        words = axes.texts[0].get_window_extent()
+        (scale,) = axes.child_axes
+        below = [label.get_window_extent() for label in scale.get_xticklabels()]
+        assert words.x1 <= figure.bbox.x1 + 0.5
+        assert scale.get_tightbbox(canvas.get_renderer()).x1 < words.x0
+        assert all(left.x1 < right.x0 for left, right in pairwise(below))
