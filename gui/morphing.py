@@ -261,7 +261,7 @@ class Morphing(QObject):
 
     def _previewed(self, view: MorphView, shapes: list[Any]) -> None:
         if view.way != self._making:
-            return  # a body that it was made from is another since
+            return  # one of its bodies has changed since
         self.view, self._making = view, None
         self._show_preview(view, 0.0)
         self.drag(0.0)

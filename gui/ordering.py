@@ -94,7 +94,7 @@ class Ordering(QObject):
     def _compare_stated(self) -> None:
         """Compare the strata of an order that the site states, as a run of the whole site does, where that is missing.
 
-        It counts in the verdict. It runs in the background: nobody waits for it.
+        It counts in the verdict, and runs in the background.
         """
         if self._task is not None or self._activity.busy or not self._document.site.order:
             return

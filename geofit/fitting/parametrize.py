@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, KDTree, QhullError
+from scipy.spatial import KDTree
 
 from geofit.checks.outside import outside
 from geofit.data.errors import FitError
@@ -22,6 +22,7 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.fold import Loft, backtracking, loft
 from geofit.fitting.sections import section_labels
 from geofit.geometry.frame import Frame, best_plane_frame, map_frame, section_azimuth
+from geofit.geometry.hull import hull_corners
 
 __all__ = ["STEEP", "Parametrization", "direction_of", "ends_at", "parametrize", "plan_box", "turns_over"]
 
@@ -298,7 +299,11 @@ def direction_of(section: NDArray[np.str_], xyz: Rows, boundary: Floats | None) 
     along = section_azimuth(xyz[:, :2], section)
     if along is not None or (boundary is None and len(xyz) < TILTED_ENOUGH):
         return along
-    corners, most = (_hull(xyz), TILTED_POINTS) if boundary is None else (boundary, TILTED_AREA)
+    corners, most = boundary, TILTED_AREA
+    if corners is None:
+        # Some of very many points have the same direction.
+        some = np.asarray(xyz[:: -(-len(xyz) // LOOKED_AT)])
+        corners, most = hull_corners(some[:, :2]), TILTED_POINTS
     best, angle = most * np.prod(np.ptp(corners, axis=0)), None
     for first, second in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         side = second - first
@@ -309,16 +314,6 @@ def direction_of(section: NDArray[np.str_], xyz: Rows, boundary: Floats | None) 
         if size < best:
             best, angle = size, float(np.arctan2(s, c))
     return angle
-
-
-def _hull(xyz: Rows) -> Floats:
-    """Return the corners of the convex hull of points in plan, of a part of them where they are many."""
-    plan = np.asarray(xyz[:: -(-len(xyz) // LOOKED_AT)])[:, :2]
-    try:
-        return plan[ConvexHull(plan).vertices]
-    except QhullError:
-        # Points in a row, or at one location: its ends.
-        return plan[np.lexsort(plan.T)[[0, -1]]]
 
 
 def _parametrize_over_sections(points: PointSet, notes: Sequence[Message]) -> Parametrization:

@@ -37,7 +37,7 @@ class PoreFiles:
 
 
 def pore_files(folder: Path, name: str, shape: tuple[int, ...], *, report: bool = False) -> tuple[Path, ...]:
-    """Return the files that :func:`write_pore_files` writes of a volume of this shape; of some there is no surface."""
+    """Return the files that :func:`write_pore_files` writes; a volume as large as :func:`is_large` gets no surface."""
     stem = file_stems([name])[name]
     endings = REPORT if report else (*NETWORK, *(() if is_large(shape) else SURFACE))
     return tuple(folder / f"{stem}{ending}" for ending in endings)

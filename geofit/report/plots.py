@@ -41,7 +41,9 @@ def space(axes: Axes, scene: Scene, t: Language = EN) -> None:
     axes.set_axis_off()
     # A narrow picture has less room below it than the words need: they go on beside it.
     tall, wide = scene.image.shape[:2]
-    place, (across, up) = axes.get_position(original=True), axes.get_figure(root=True).get_size_inches()
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    place, (across, up) = axes.get_position(original=True), figure.get_size_inches()
     room = place.width * across
     share = max(min(WORDS, room) / min(room, place.height * up * wide / tall), 1.0)
     colour_scale(axes, scene.limits, t("Elevation, m"), share)

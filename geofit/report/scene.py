@@ -48,8 +48,8 @@ STEPS = 90
 SHEER = 0.55
 #: Heights are raised by a whole number, at most MOST_RAISED, until it is this share of the width.
 LEAST_HEIGHT, MOST_RAISED = 0.14, 5
-#: Points and holes are not drawn that lie beside the surfaces by more than these are wide, or, raised, so much above or
-#: below the middle one and so many times farther than most.
+#: Points and holes are not drawn if they lie farther outside the surfaces' extent than that is wide. Nor are those
+#: whose height, exaggerated, differs from the median by more than that, and by this many times the usual difference.
 FAR = 8.0
 #: Pores of a network are drawn so much smaller, so that the throats are seen.
 BALL = 0.6
@@ -254,7 +254,7 @@ def _raised(surfaces: Sequence[HorizonFit]) -> int:
 
 
 def _far(xyz: Floats, raised: int, *surfaces: HorizonFit) -> NDArray[np.bool_]:
-    """Mark places (n, 3) that would leave the surfaces a speck: a wrong sign, a wrong unit, a wrong digit."""
+    """Mark places (n, 3) so far off that the surfaces would shrink to a speck: a wrong sign, unit or digit."""
     if not len(xyz):
         return np.zeros(0, bool)
     plan = np.concatenate(
@@ -265,9 +265,9 @@ def _far(xyz: Floats, raised: int, *surfaces: HorizonFit) -> NDArray[np.bool_]:
     )
     low, high = plan.min(axis=0), plan.max(axis=0)
     width = float((high - low).max())
-    beside = np.maximum(low - xyz[:, :2], xyz[:, :2] - high).max(axis=1)
+    outside = np.maximum(low - xyz[:, :2], xyz[:, :2] - high).max(axis=1)
     away = np.abs(xyz[:, 2] - np.median(xyz[:, 2]))
-    return np.asarray((beside > width) | (raised * away > max(width, FAR * raised * float(np.median(away)))))
+    return np.asarray((outside > width) | (raised * away > max(width, FAR * raised * float(np.median(away)))))
 
 
 def _plotter(size: tuple[int, int]) -> pyvista.Plotter:

@@ -70,7 +70,7 @@ class AdjustPanel(QWidget):
         scroll.setFrameShape(QFrame.Shape.NoFrame)
         scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        # What is in it is never cut off at the right: there is no bar to reach it by.
+        # It is at least as wide as its contents: there is no horizontal scroll bar.
         sized_by_text(page, lambda: scroll.setMinimumWidth(page.minimumSizeHint().width()))
         self.pages = Placeholder(scroll, self)
         self._pause = QTimer(self, singleShot=True, interval=PAUSE)
@@ -122,7 +122,7 @@ class AdjustPanel(QWidget):
         self._begin()
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
-        """Ask for the effect on a data point that was chosen while nobody saw the panel."""
+        """Ask for the effect on a data point that was chosen while the panel was hidden."""
         super().showEvent(event)
         self._begin()
 

@@ -189,7 +189,7 @@ def test_the_effect_on_a_data_point_is_asked_for_as_soon_as_it_is_chosen(panel, 
     with qtbot.waitSignal(panel.move_wanted, timeout=2000) as told:
         panel.choose_point(surface.accuracy.worst[0])
     assert told.args == [surface.accuracy.worst[0], 1.0]
-    # Nobody pays for it while the panel is behind others; it comes with the panel.
+    # It is computed when the panel is shown, not while it is behind others.
     panel.hide()
     with qtbot.assertNotEmitted(panel.move_wanted, wait=600):
         panel.choose_point(surface.accuracy.worst[1])

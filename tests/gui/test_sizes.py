@@ -135,7 +135,7 @@ def test_panels_grow_with_the_text(qtbot, qapp, usual_text):
         assert now == pytest.approx([1.5 * size for size in letters], rel=0.01)
         assert table.columnWidth(0) > 1.2 * column
         assert table.verticalHeader().defaultSectionSize() > 1.2 * row
-        # Nothing of it is cut off at the right: there is no bar to reach it by.
+        # It has no horizontal scroll bar: all of it must fit.
         assert panel.minimumSizeHint().width() >= inner.minimumSizeHint().width() > width
 
     qtbot.waitUntil(grown)
